@@ -104,6 +104,16 @@ pub fn build_sinew(profile: Profile) -> Result<PathBuf> {
     build(&mut command, "sinew")
 }
 
+/// Returns the path of the debug binary that the tests run, with the window. After the tests it needs no compiling; the command line alone
+/// has other features and takes two minutes.
+///
+/// # Errors
+/// If the tests do not compile.
+pub fn sinew_of_tests() -> Result<PathBuf> {
+    let arguments = ["test", "--workspace", "--features", "sinew_cli/viewer", "--tests", "--no-run"];
+    build(&mut cargo(&arguments), "sinew")
+}
+
 /// Runs `command`, a `cargo build`, and returns the path of the executable `name` in any target folder.
 ///
 /// # Errors
@@ -115,7 +125,7 @@ pub fn build(command: &mut Command, name: &str) -> Result<PathBuf> {
     messages
         .lines()
         .filter_map(|line| serde_json::from_str::<Value>(line).ok())
-        .filter(|message| message["target"]["name"] == name)
+        .filter(|message| message["target"]["name"] == name && message["profile"]["test"] == false)
         .find_map(|message| message["executable"].as_str().map(PathBuf::from))
         .with_context(|| format!("cargo names no executable `{name}`"))
 }

@@ -118,7 +118,11 @@ fn parse(text: &str) -> Result<Vec<GoldenHash>> {
 fn observe(known: &[GoldenHash], variants: &[Variant]) -> Result<Vec<GoldenHash>> {
     let binaries =
         |profile| variants.iter().find(|&&(p, _)| p == profile).map(|_| command::build_sinew(profile));
-    let debug = binaries(Profile::Debug).transpose()?;
+    let debug = if variants == DIAGONAL {
+        Some(command::sinew_of_tests()?)
+    } else {
+        binaries(Profile::Debug).transpose()?
+    };
     let release = binaries(Profile::Release).transpose()?;
     let binary = |profile| match profile {
         Profile::Debug => debug.clone(),
@@ -129,11 +133,9 @@ fn observe(known: &[GoldenHash], variants: &[Variant]) -> Result<Vec<GoldenHash>
     for scene in scenes(&any)? {
         let steps =
             known.iter().find(|golden| golden.scene == scene).map_or(STEPS_DEFAULT, |golden| golden.steps);
-        let mut hashes = Vec::new();
-        for &(profile, threads) in variants {
-            let binary = binary(profile).context("no build to run")?;
-            hashes.push(hash(&binary, &scene, steps, threads)?);
-        }
+        let mut hashes = variants_at_once(variants, |profile, threads| {
+            hash(&binary(profile).context("no build to run")?, &scene, steps, threads)
+        })?;
         if hashes.iter().any(|hash| *hash != hashes[0]) {
             let shown = variants.iter().zip(&hashes);
             let shown: Vec<String> =
@@ -144,6 +146,23 @@ fn observe(known: &[GoldenHash], variants: &[Variant]) -> Result<Vec<GoldenHash>
         observed.push(GoldenHash { scene, steps, hash: hashes.swap_remove(0) });
     }
     Ok(observed)
+}
+
+/// Runs all variants at the same time; returns their results in order.
+fn variants_at_once(
+    variants: &[Variant],
+    run: impl Fn(Profile, u32) -> Result<String> + Sync,
+) -> Result<Vec<String>> {
+    std::thread::scope(|scope| {
+        let started: Vec<_> = variants
+            .iter()
+            .map(|&(profile, threads)| {
+                let run = &run;
+                scope.spawn(move || run(profile, threads))
+            })
+            .collect();
+        started.into_iter().map(|it| it.join().expect("no run panics")).collect()
+    })
 }
 
 fn scenes(binary: &Path) -> Result<Vec<String>> {
