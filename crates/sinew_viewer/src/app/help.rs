@@ -11,13 +11,15 @@ const HINTS: [&str; 3] = [
 ];
 
 /// Keys, each with its effect.
-const KEYS: [(&str, &str); 22] = [
+const KEYS: [(&str, &str); 24] = [
     ("left drag", "on a body: pull it; on the background: look around"),
     ("right drag", "look around"),
     ("middle drag, Shift + drag", "shift the view"),
     ("wheel", "nearer, farther"),
     ("W A S D, Q E", "fly; with Shift faster"),
-    ("G", "W A S D walk a character (scene 'street'), and no more"),
+    ("G", "W A S D walk the character, and no more"),
+    ("Ctrl+Z, Ctrl+Y", "undo and redo what you did; edits and settings too"),
+    ("X", "show body, point and normal below the pointer"),
     ("F; C", "see all of the scene; go along with it"),
     ("Space", "run, pause"),
     ("N, .", "one step"),

@@ -1,14 +1,19 @@
 //! The viewer without its window: subject, user operations, and panels.
 
+mod actor;
 mod bench;
 mod browser;
 mod editor;
 mod help;
 mod inspector;
 mod mouse;
+mod names;
 mod orders;
+mod probe;
+mod solver;
 mod style;
 mod timeline;
+mod tour;
 mod transport;
 mod walk;
 
@@ -18,16 +23,20 @@ use crate::preferences::Preferences;
 use crate::session::{NamedFile, Session, Subject};
 use crate::stage::Stage;
 use crate::view::{self, Orbit};
+use actor::Pressed;
 use bench::Bench;
 use egui::{Key, Rect, Vec2};
 use mouse::Mouse;
 pub use orders::Order;
+use probe::Probe;
 use sinew::math::Vec3;
 use sinew_picture::Camera;
-use sinew_scenes::recording::Recording;
+use sinew_scenes::recording::{Operation, Recording};
+use sinew_scenes::scenes::Act;
 use sinew_scenes::staged::Sample;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
+use tour::Tour;
 use web_time::{Duration, Instant};
 
 /// Longest stepping time of a frame, so that the window stays responsive in scenes slower than real time.
@@ -115,6 +124,13 @@ pub struct App {
     follows: Option<Chase>,
     /// Velocity of the character controlled by keys, m/s; `None` while keys move the camera.
     leads: Option<Vec3>,
+    probe: Probe,
+    /// Subjects with other settings, before and after this one.
+    past: Vec<Subject>,
+    future: Vec<Subject>,
+    tour: Tour,
+    /// Settings that run beside the next ones.
+    pinned: Option<Subject>,
     hides_times: bool,
     hides_browser: bool,
     hides_panels: bool,
@@ -181,6 +197,11 @@ impl App {
             seeking: None,
             follows: None,
             leads: None,
+            probe: Probe::default(),
+            past: Vec::new(),
+            future: Vec::new(),
+            tour: Tour::default(),
+            pinned: None,
             hides_times: options.hides_times,
             hides_browser: options.hides_browser,
             hides_panels: options.hides_panels,
@@ -224,6 +245,7 @@ impl App {
     pub fn stage(&self) -> Stage<'_> {
         let mut stage = view::stage(&self.session, &self.camera(), &self.layers);
         bench::draw(self, &mut stage);
+        self.probe.draw(self.orbit.distance, &mut stage);
         stage
     }
 
@@ -320,6 +342,7 @@ impl App {
                 self.session = session;
                 self.session.set_threads(threads);
                 self.shows_hints = false;
+                (self.past, self.future, self.pinned) = (Vec::new(), Vec::new(), None);
                 self.begin();
                 self.tell(format!("opened {}", self.session.subject().title()));
             }
@@ -509,7 +532,8 @@ impl App {
             return;
         }
         if let Some(goal) = self.goal {
-            return self.hurry(goal, now);
+            self.hurry(goal, now);
+            return self.go_on_touring();
         }
         let dt = f64::from(self.session.world().def().dt());
         self.pending += passed.min(LONGEST_FRAME) * f64::from(self.speed);
@@ -553,6 +577,9 @@ impl App {
             // A still picture needs no fade.
             self.go_along(if self.hides_times { f32::INFINITY } else { self.passed });
             bench::overlay(self, ui);
+            let at = ui.input(|input| input.pointer.hover_pos()).filter(|at| self.area.contains(*at));
+            let below = at.map(|at| (at, mouse::ray(self, at)));
+            self.probe.update(below, self.session.world(), ui);
             if !self.hides_panels {
                 help::overlay(self, ui);
             }
@@ -619,6 +646,9 @@ impl App {
         if pressed(Key::P) || pressed(Key::F12) {
             self.wants_screenshot = true;
         }
+        if pressed(Key::X) {
+            self.probe.is_on = !self.probe.is_on;
+        }
         if typed("?") || pressed(Key::F1) {
             self.shows_help = !self.shows_help;
         }
@@ -626,6 +656,7 @@ impl App {
             self.focuses_search = true;
         }
         if pressed(Key::Escape) {
+            self.search.clear();
             self.shows_help = false;
             self.shows_hints = false;
         }
@@ -647,6 +678,16 @@ impl App {
         let saves = |input: &egui::InputState| input.events.iter().any(is_save);
         if ctx.input(saves) {
             bench::save(self);
+        }
+        let reverts = |event: &egui::Event| match event {
+            egui::Event::Key { key: Key::Z, pressed: true, modifiers, .. } if modifiers.command => {
+                Some(modifiers.shift)
+            }
+            egui::Event::Key { key: Key::Y, pressed: true, modifiers, .. } if modifiers.command => Some(true),
+            _ => None,
+        };
+        if let Some(redo) = ctx.input(|input| input.events.iter().find_map(reverts)) {
+            self.undo(redo);
         }
         for (key, by) in [(Key::OpenBracket, -1), (Key::CloseBracket, 1)] {
             if pressed(key) {
@@ -687,6 +728,111 @@ impl App {
             self.orbit.shift(way * (seconds * if fast { 2.4 } else { 0.8 }));
             ctx.request_repaint();
         }
+    }
+
+    /// Gives an instruction to the character of the scene.
+    pub fn act(&mut self, act: Act) {
+        if self.session.instance().directed().is_none() || !self.session.is_live() {
+            return self.tell("no character here carries out instructions");
+        }
+        self.session.apply(Operation::Act { act });
+        (self.leads, self.running, self.shows_hints) = (None, true, false);
+        self.follow(true);
+        if let Some(character) = self.session.instance().directed() {
+            self.tell(actor::told(act, character));
+        }
+    }
+
+    /// Carries out what a button for the character does.
+    fn press(&mut self, pressed: Pressed) {
+        match pressed {
+            Pressed::Hit => {
+                self.running = true;
+                mouse::push_subject(self);
+            }
+            Pressed::Walk => walk::toggle(self),
+            Pressed::Act(act) => self.act(act),
+        }
+    }
+
+    /// Runs all scenes to their ends, one after the other, or stops; results stay.
+    fn tour(&mut self) {
+        if self.tour.runs {
+            self.tour.runs = false;
+            (self.goal, self.running) = (None, false);
+            return;
+        }
+        self.tour = Tour::begun();
+        self.open_next();
+    }
+
+    /// Opens the next scene of the tour; after the last one the tour ends.
+    fn open_next(&mut self) {
+        let Some(scene) = self.tour.next() else {
+            self.tour.runs = false;
+            return self.tell(self.tour.told());
+        };
+        if let Ok(subject) = Subject::scene(scene.name, &[]) {
+            self.open(subject);
+            (self.goal, self.running) = (Some(u64::from(scene.steps)), true);
+        }
+    }
+
+    /// Notes the result of a scene that has ended, and opens the next one.
+    fn go_on_touring(&mut self) {
+        if !self.tour.runs || self.goal.is_some() {
+            return;
+        }
+        let next = self.tour.next().map(|scene| scene.name);
+        if next != Some(self.session.subject().title().as_str()) {
+            self.tour.runs = false;
+            return;
+        }
+        let is_met = self.session.metrics().iter().all(|metric| metric.is_met());
+        self.tour.note(is_met);
+        self.open_next();
+    }
+
+    /// Undoes the last operation, edit or change of settings, or does it again.
+    pub fn undo(&mut self, redo: bool) {
+        let name = if redo { "redo" } else { "undo" };
+        match self.session.undo(redo) {
+            Err(line) => self.tell(line),
+            Ok(true) => {
+                let chosen = self.bench.chosen;
+                (self.starts, self.mouse) = (self.starts + 1, Mouse::default());
+                bench::choose(self, chosen);
+                self.tell(if redo { "done again" } else { "undone" });
+            }
+            Ok(false) => {
+                let list = if redo { &mut self.future } else { &mut self.past };
+                let Some(subject) = list.pop() else { return self.tell(format!("nothing to {name}")) };
+                let pinned = self.pinned.take();
+                let (now, [mut past, mut future]) = (
+                    self.session.subject().clone(),
+                    [core::mem::take(&mut self.past), core::mem::take(&mut self.future)],
+                );
+                if redo {
+                    past.push(now)
+                } else {
+                    future.push(now)
+                }
+                self.open(subject);
+                (self.past, self.future, self.pinned) = (past, future, pinned);
+            }
+        }
+    }
+
+    /// Opens the scene with other settings; the present ones can be restored.
+    fn open_with_settings(&mut self, subject: Subject) {
+        let mut past = core::mem::take(&mut self.past);
+        past.push(self.session.subject().clone());
+        let pinned = self.pinned.take();
+        self.open(subject);
+        if let Some(subject) = &pinned {
+            self.session.set_twin(subject);
+        }
+        (self.past, self.pinned) = (past, pinned);
     }
 
     /// Switches a layer on or off.
