@@ -56,6 +56,12 @@ const LIMP: &str = "limp";
 /// A measurement outside of the peers' scenes: some scenes on one thread and on two, by wall time.
 const THREADS: &str = "threads";
 
+/// A measurement outside of the peers' list: heaps of ragdolls at several efforts of each engine.
+const EFFORT: &str = "effort";
+
+/// Scenes measured at several efforts.
+const AT_EFFORTS: &[&str] = &["ragdoll_pile", "crowd_pile"];
+
 /// The threaded scenes, and the steps of each.
 const THREADED: &[(&str, u32)] = &[("box_rain", 120), ("ragdoll_pile", 300)];
 
@@ -65,7 +71,7 @@ const THREADED: &[(&str, u32)] = &[("box_rain", 120), ("ragdoll_pile", 300)];
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask bench --scene ragdoll_pile --scene chain_swing_1000 --quick")]
 pub struct Bench {
-    /// Only this scene of `peers list`, or `bake`, `limp` or `threads`; others keep their results
+    /// Only this scene of `peers list`, or `bake`, `effort`, `limp` or `threads`; others keep their results
     #[arg(long = "scene", value_name = "NAME")]
     scenes: Vec<String>,
     /// Only this engine of `peers list`; the scenes that run lose the results of the others
@@ -145,6 +151,9 @@ impl Bench {
             [requirements::HOLDS, requirements::STANDS].map(|rows| page::holds(&results, rows));
         let [physics, animation] = [page::glance(&results), page::animation(&results)];
         println!("{physics}\n{joints}\n{stands}\n{animation}\n{}", page::ragdolls(&results));
+        if !results.efforts.is_empty() {
+            println!("{}", page::efforts(&results));
+        }
         println!("{}", page::speeds(&results));
         Ok(self.verdict(&results))
     }
@@ -155,12 +164,16 @@ impl Bench {
             bail!("no engine `{name}`");
         }
         let is_known = |scene: &String| {
-            [BAKE, LIMP, THREADS].contains(&scene.as_str()) || scenes.iter().any(|known| known.name == *scene)
+            [BAKE, EFFORT, LIMP, THREADS].contains(&scene.as_str())
+                || scenes.iter().any(|known| known.name == *scene)
         };
         match self.scenes.iter().find(|scene| !is_known(scene)) {
             Some(scene) => {
                 let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
-                bail!("no scene `{scene}`; there are {}, {BAKE}, {LIMP}, {THREADS}", names.join(", "))
+                bail!(
+                    "no scene `{scene}`; there are {}, {BAKE}, {EFFORT}, {LIMP}, {THREADS}",
+                    names.join(", ")
+                )
             }
             None => Ok(()),
         }
@@ -179,10 +192,16 @@ impl Bench {
         let machine = Some(Machine::this().to_string());
         let mut results = Results { machine, ..Results::default() };
         for scene in scenes.iter().filter(|scene| self.is_wanted(&scene.name)) {
-            let engines = self.race(engines, scene)?;
-            let (name, about) = (scene.name.clone(), scene.about.clone());
-            results.scenes.push(SceneResult { name, about, revision: revision.clone(), engines });
+            let rounds = if scene.is_chaotic { STARTS } else { self.rounds };
+            results.scenes.push(self.race(engines, scene, &revision, rounds)?);
             self.keep(&results, scenes)?;
+        }
+        if self.is_wanted(EFFORT) {
+            let engines = peers::at_efforts(engines);
+            for scene in scenes.iter().filter(|scene| AT_EFFORTS.contains(&scene.name.as_str())) {
+                results.efforts.push(self.race(&engines, scene, &revision, self.rounds)?);
+                self.keep(&results, scenes)?;
+            }
         }
         if self.is_wanted(BAKE) && !self.quick {
             (results.bake, results.build) = bake()?;
@@ -206,12 +225,11 @@ impl Bench {
     }
 
     /// Runs a scene on all engines that support it, alternating, so that other load affects them equally.
-    fn race(&self, engines: &[Engine], scene: &Scene) -> Result<Vec<EngineResult>> {
+    fn race(&self, engines: &[Engine], scene: &Scene, revision: &str, rounds: u32) -> Result<SceneResult> {
         let result = |engine: &Engine| EngineResult { name: engine.name.clone(), reports: Vec::new() };
         let engines: Vec<&Engine> = engines.iter().filter(|engine| engine.is_for(scene)).collect();
         let mut results: Vec<_> = engines.iter().copied().map(result).collect();
-        let whole = if scene.is_chaotic { STARTS } else { self.rounds };
-        let (rounds, steps) = if self.quick { (1, Some(QUICK_STEPS)) } else { (whole, self.steps) };
+        let (rounds, steps) = if self.quick { (1, Some(QUICK_STEPS)) } else { (rounds, self.steps) };
         for round in 1..=rounds {
             for (engine, result) in engines.iter().zip(&mut results) {
                 if result.missing_reason().is_some() {
@@ -226,7 +244,8 @@ impl Bench {
                 result.reports.push(report);
             }
         }
-        Ok(results)
+        let (name, about) = (scene.name.clone(), scene.about.clone());
+        Ok(SceneResult { name, about, revision: revision.to_owned(), engines: results })
     }
 
     fn verdict(&self, results: &Results) -> ExitCode {

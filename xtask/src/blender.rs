@@ -4,20 +4,22 @@ use crate::bindings;
 use crate::command;
 use anyhow::{Context, Result, bail};
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Blender as a module, and its Python.
 const BPY: &str = "bpy==5.0.1";
 const PYTHON: &str = "python3.11";
 /// Rigs of tests/rigs.py for the whole test; those of files need the data.
-const RIGS: &[&str] = &["cesium_man", "knight", "rigify_human", "fox", "scale_100"];
+const RIGS: &[&str] = &["cesium_man", "knight", "rigify_human", "fox", "scale_100", "gunner"];
+/// Debian's packages for the test in a window.
+const WINDOW: &[&str] = &["blender", "xvfb", "xauth", "python3-numpy", "libgl1-mesa-dri"];
 const DATA: &str = "../shared/data";
 
 /// `cargo xtask blender`.
 #[derive(clap::Args)]
 pub struct Blender {
-    /// Also install it into Blender's Python module (1 GB from PyPI) and test everything on five rigs
+    /// Also install it into Blender's Python module (1 GB from PyPI), test everything on six rigs, and take screenshots in a window
     #[arg(long)]
     check: bool,
 }
@@ -56,7 +58,7 @@ fn zip() -> Result<PathBuf> {
     Ok(path.into())
 }
 
-/// Tests the zip, installed by Blender's own operator with empty settings: every operator, and the whole workflow on each rig.
+/// Tests the zip, installed by Blender's own operator with empty settings: every operator, the whole workflow on each rig, and a window.
 ///
 /// # Errors
 /// If a part fails, or there is no network.
@@ -88,7 +90,46 @@ pub fn check() -> Result<()> {
         command::run(python.env("BLENDER_USER_RESOURCES", &settings)).context(arguments.join(" "))
     };
     run(&["operators.py"])?;
-    RIGS.iter().try_for_each(|rig| run(&["job.py", rig]))
+    RIGS.iter().try_for_each(|rig| run(&["job.py", rig]))?;
+    window(&tests, &data)
+}
+
+/// Tests the preview, the handles and the simulation in a window of an installed Blender, such as Debian's 3.4, and leaves screenshots.
+fn window(tests: &Path, data: &Path) -> Result<()> {
+    let has_window = ["blender", "Xvfb"].into_iter().all(command::answers);
+    if !has_window && !command::answers("apt-get") {
+        eprintln!("skipped: no Blender and Xvfb here for the test in a window");
+        return Ok(());
+    }
+    if !has_window {
+        command::run(Command::new("apt-get").arg("update"))?;
+        command::run(Command::new("apt-get").args(["install", "--yes"]).args(WINDOW))?;
+    }
+    let (wheel, shots) = (folder().join("unpacked"), folder().join("shots"));
+    for made in [&wheel, &shots] {
+        if made.exists() {
+            fs::remove_dir_all(made)?;
+        }
+        fs::create_dir_all(made)?;
+    }
+    let wheels = fs::read_dir(folder().join("wheels"))?.collect::<std::io::Result<Vec<_>>>()?;
+    let built = wheels.first().context("there is no wheel")?.path();
+    let mut pip = bindings::pip(&folder().join("builder"));
+    command::run(pip.args(["--no-deps", "--target"]).arg(&wheel).arg(built))?;
+    let mut blender = Command::new("xvfb-run");
+    blender.args([
+        "-a",
+        "-s",
+        "-screen 0 1200x800x24",
+        "blender",
+        "--factory-startup",
+        "--enable-event-simulate",
+    ]);
+    blender.args(["--window-geometry", "0", "0", "1200", "800", "-P"]).arg(tests.join("window.py"));
+    blender.env("PYTHONDONTWRITEBYTECODE", "1").env("BLENDER_USER_RESOURCES", folder().join("settings"));
+    command::run(blender.env("SINEW_DATA", data).env("SINEW_WHEEL", &wheel).env("SINEW_SHOTS", &shots))?;
+    eprintln!("look at {}", shots.display());
+    Ok(())
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ mod leftovers;
 mod lexer;
 mod libraries;
 mod public;
+mod python_names;
 mod rooms;
 mod size;
 mod stages;
@@ -37,6 +38,7 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     rooms::check,
     circles::check,
     public::check,
+    python_names::check,
     code_map::check,
     libraries::check,
     bits::check,

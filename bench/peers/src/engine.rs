@@ -1,12 +1,42 @@
 //! Interface of a measured engine.
 
+use core::str::FromStr;
 use serde_json::{Value, json};
 use sinew::math::{Rotation, SwingTwistLimit, Transform, Vec3};
+use sinew::physics::Quality;
 use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
 use thiserror::Error;
 
 use crate::scenes::{BoxPairs, ClothScene, Field, RayScene};
 use sinew_scenes::crowd::CrowdScene;
+
+/// Work per step, the setting by which an engine trades time for accuracy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Effort {
+    /// The engine's default.
+    #[default]
+    Default,
+    /// Number of substeps of a step, for peers: Rapier's solver iterations, Box3D's substeps, Jolt's collision steps.
+    Substeps(u32),
+    /// Quality of Sinew's world.
+    Quality(Quality),
+}
+
+impl FromStr for Effort {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "fast" => Ok(Self::Quality(Quality::Fast)),
+            "balanced" => Ok(Self::Quality(Quality::Balanced)),
+            "exact" => Ok(Self::Quality(Quality::Exact)),
+            _ => match text.parse() {
+                Ok(substeps @ 1..=64) => Ok(Self::Substeps(substeps)),
+                _ => Err("fast, balanced or exact (Sinew), or 1 to 64 substeps (peers)".into()),
+            },
+        }
+    }
+}
 
 /// An engine under measurement, with its default settings.
 ///
@@ -23,8 +53,16 @@ pub trait Engine: Sync {
     /// Returns a world with all of the blueprint, before its first step.
     ///
     /// # Errors
+    /// If the engine lacks a feature or the kind of effort.
+    fn build_at(&self, scene: &Blueprint, effort: Effort) -> Result<Box<dyn Simulation>, Unsupported>;
+
+    /// Returns [`Engine::build_at`] the engine's default effort.
+    ///
+    /// # Errors
     /// If the engine lacks a feature.
-    fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported>;
+    fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported> {
+        self.build_at(scene, Effort::Default)
+    }
 
     /// Returns a cloth over obstacles.
     ///

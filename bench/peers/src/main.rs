@@ -3,6 +3,7 @@
 
 use clap::{Parser, Subcommand};
 use serde_json::{Value, json};
+use sinew_peers::engine::Effort;
 use sinew_peers::engines::{self, ENGINES, Entry};
 use sinew_peers::mjcf::mjcf;
 use sinew_peers::resume::{resume, save};
@@ -109,6 +110,9 @@ enum Command {
         /// Run it again, untimed, and measure the quality.
         #[arg(long)]
         quality: bool,
+        /// Work per step of scenes of bodies: fast, balanced or exact for Sinew, a number of substeps for a peer.
+        #[arg(long)]
+        effort: Option<Effort>,
     },
 }
 
@@ -155,10 +159,11 @@ fn main() -> ExitCode {
                 "this binary was built without {name}: see the features in bench/peers/Cargo.toml"
             ));
         }
-        Command::Run { engine: Entry { engine: Some(engine), .. }, scene, steps, start, quality } => {
+        Command::Run { engine: Entry { engine: Some(engine), .. }, scene, steps, start, quality, effort } => {
             let start = start.map_or(Start::Own, Start::Perturbed);
             let judging = if quality { Judging::On } else { Judging::Off };
-            run(*engine, scene, start, steps.map(|steps| steps as usize), judging)
+            let how = (judging, effort.unwrap_or_default());
+            run(*engine, scene, start, steps.map(|steps| steps as usize), how)
         }
     };
     println!("{report}");

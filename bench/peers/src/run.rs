@@ -1,6 +1,6 @@
 //! Runs one scene on one engine: for the time, and optionally again for the quality.
 
-use crate::engine::{BodyState, Engine, Unsupported};
+use crate::engine::{BodyState, Effort, Engine, Unsupported};
 use crate::measure::{Memory, StepTimes};
 use crate::quality::{ClothMeter, CrowdMeter, QualityMeter};
 use crate::scenes::{BoxPairs, ClothScene, RayScene, Scene, Work};
@@ -47,13 +47,13 @@ impl Start {
 
 /// Returns the result as one JSON object; `"unsupported"` gives the reason for missing results.
 ///
-/// `steps` is the number of steps; `None`: the scene's own.
+/// `steps` is the number of steps; `None`: the scene's own. `effort` is that of scenes of bodies; others run with the engine's default.
 pub fn run(
     engine: &dyn Engine,
     scene: &Scene,
     start: Start,
     steps: Option<usize>,
-    judging: Judging,
+    (judging, effort): (Judging, Effort),
 ) -> Value {
     let work = start.of((scene.work)());
     let steps = steps.unwrap_or(work.steps());
@@ -61,7 +61,7 @@ pub fn run(
     report["scene"] = json!(scene.name);
     report["steps"] = json!(steps);
     let figures = match &work {
-        Work::Bodies(blueprint) => run_bodies(engine, blueprint, steps, judging),
+        Work::Bodies(blueprint) => run_bodies(engine, blueprint, steps, (judging, effort)),
         Work::Cloth(cloth) => run_cloth(engine, cloth, steps, judging),
         Work::Rays(rays) => run_rays(engine, rays, steps),
         Work::Boxes(pairs) => run_boxes(engine, pairs, steps),
@@ -81,10 +81,10 @@ fn run_bodies(
     engine: &dyn Engine,
     scene: &Blueprint,
     steps: usize,
-    judging: Judging,
+    (judging, effort): (Judging, Effort),
 ) -> Result<Value, Unsupported> {
     let memory = Memory::now();
-    let mut simulation = engine.build(scene)?;
+    let mut simulation = engine.build_at(scene, effort)?;
     let times = StepTimes::measure(steps, |_| simulation.step());
     drop(simulation);
     let mut figures = json!({
@@ -94,13 +94,18 @@ fn run_bodies(
         "peak_rss_mib": memory.peak_above_mib(),
     });
     if judging == Judging::On {
-        figures["quality"] = judge_bodies(engine, scene, steps)?;
+        figures["quality"] = judge_bodies(engine, scene, steps, effort)?;
     }
     Ok(figures)
 }
 
-fn judge_bodies(engine: &dyn Engine, scene: &Blueprint, steps: usize) -> Result<Value, Unsupported> {
-    let mut simulation = engine.build(scene)?;
+fn judge_bodies(
+    engine: &dyn Engine,
+    scene: &Blueprint,
+    steps: usize,
+    effort: Effort,
+) -> Result<Value, Unsupported> {
+    let mut simulation = engine.build_at(scene, effort)?;
     let mut meter = QualityMeter::new(scene, PENETRATION_EVERY);
     let mut states: Vec<BodyState> = Vec::new();
     let mut asleep_step = None;

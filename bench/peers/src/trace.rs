@@ -2,6 +2,7 @@
 //!
 //! Scenes without a world's step (rays, pairs of boxes, clips) have one time for the whole.
 
+use crate::engine::Effort;
 use crate::engines;
 use crate::measure::quantile;
 use crate::run::{Judging, Start, run};
@@ -100,7 +101,7 @@ impl Trace<'_> {
     fn whole(&self, scene: &scenes::Scene) -> Result<Value, String> {
         let entry = engines::find("sinew").and_then(|entry| entry.engine).ok_or("this build has no Sinew")?;
         let steps = self.steps.map(|steps| steps as usize);
-        let report = run(entry, scene, Start::Own, steps, Judging::Off);
+        let report = run(entry, scene, Start::Own, steps, (Judging::Off, Effort::Default));
         if let Some(why) = report["unsupported"].as_str() {
             return Err(format!("{}: {why}", self.scene));
         }

@@ -222,7 +222,7 @@ impl CharacterFile {
             None => looped_among(rig, &self.analysis, clips),
             Some(name) => {
                 let found = clips.iter().position(|clip| clip.name == *name);
-                Some(found.ok_or_else(|| failed(&format!("no clip is called '{name}'")))?)
+                Some(found.ok_or_else(|| unknown_clip(name, clips))?)
             }
         };
         let mut get_ups = def.get_ups_among(clips);
@@ -253,6 +253,13 @@ impl CharacterFile {
         }
         def.set_motions(own).map_err(|error| failed(&error))
     }
+}
+
+/// Returns the error for a clip name that the file does not have.
+fn unknown_clip(name: &str, clips: &[Clip]) -> Failure {
+    let names: Vec<&str> = clips.iter().map(|clip| clip.name.as_str()).collect();
+    let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+    Failure::argument(format!("no clip is called '{name}'; there are {known}"))
 }
 
 /// Converts a motion file to a glTF document.

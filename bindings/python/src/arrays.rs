@@ -4,7 +4,7 @@ use crate::errors::bad;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods, dtype};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sinew::math::{Rotation, Transform, Vec3};
+use sinew::math::{Affine, Rotation, Transform, Vec3};
 use sinew::physics::Velocity;
 
 /// Makes an array of `shape` with these elements.
@@ -75,6 +75,13 @@ pub fn poses(numbers: &[f32], name: &str) -> PyResult<Vec<Transform>> {
 pub fn push_pose(numbers: &mut Vec<f32>, pose: &Transform) {
     let (p, q) = (pose.translation, pose.rotation);
     numbers.extend([p.x, p.y, p.z, q.x, q.y, q.z, q.w]);
+}
+
+/// Makes the array of a matrix, (3, 4).
+pub fn affine<'py>(py: Python<'py>, matrix: &Affine) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+    let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| matrix.vector(axis));
+    let t = matrix.translation;
+    array(py, vec![x.x, y.x, z.x, t.x, x.y, y.y, z.y, t.y, x.z, y.z, z.z, t.z], &[3, 4])
 }
 
 /// Converts rows of six numbers to velocities: linear and angular.

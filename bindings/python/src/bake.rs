@@ -1,18 +1,22 @@
 //! Bakes: the simulated motion of a character as arrays, and as a clip in a file.
 
-use crate::arrays::{array, floats, poses, push_pose, vec3};
+use crate::arrays::{affine, array, floats, poses, push_pose, vec3};
+use crate::character_settings::edited;
 use crate::collider::{Collider, parted, world_of};
 use crate::drive::{Drive, body_named};
 use crate::errors::{Cancelled, bad, guarded, of_file, refused};
+use crate::field::Field;
 use crate::ragdoll::quality_dict;
+use crate::world::world_def;
 use core::ops::ControlFlow;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use sinew::anim::Rig;
+use sinew::anim::{KeyBound, Rig};
 use sinew::formats::{UsdInput, UsdText, append_clip, write_atomic, write_gltf, write_usda};
-use sinew::math::{Affine, Transform};
+use sinew::math::{Affine, Transform, Vec3};
 use sinew::physics::{FieldDef, FieldKind, Wind, WorldDef};
+use sinew::ragdoll::bake::KEY_BOUND;
 use sinew::ragdoll::quality::{judge_bake, toppled};
 use sinew::ragdoll::{
     BakeHit, BakeInput, BakeReturn, Baked, CharacterDef, CharacterEvent, HitEffect, State, Verdict,
@@ -57,6 +61,8 @@ pub struct Actor {
     name: String,
     /// True if a limp character that stays upright is pushed over; only in a bake of one character.
     topples: bool,
+    /// Velocity that a character's highest point gets when it goes limp at its time, m/s.
+    topple_velocity: Vec3,
 }
 
 /// Hit of a bake: time in seconds, body by role or joint, impulse in N·s.
@@ -66,7 +72,7 @@ type Hit<'py> = (f32, String, Bound<'py, PyAny>);
 impl Actor {
     /// Creates the actor from Python's arguments.
     #[new]
-    #[pyo3(signature = (character, *, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, pose=None, phase=0.0, name="sinew"))]
+    #[pyo3(signature = (character, *, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, topple_velocity=None, pose=None, phase=0.0, name="sinew"))]
     fn new(
         character: &Character,
         hits: Option<Vec<Hit<'_>>>,
@@ -76,6 +82,7 @@ impl Actor {
         return_at: Option<f32>,
         return_seconds: f32,
         topple: Option<bool>,
+        topple_velocity: Option<&Bound<'_, PyAny>>,
         pose: Option<&Bound<'_, PyAny>>,
         phase: f32,
         name: &str,
@@ -96,6 +103,7 @@ impl Actor {
             None => Transform::IDENTITY,
         };
         let nothing = hits.is_empty() && limp_at.is_none() && drives.is_empty();
+        let velocity = topple_velocity.map(|given| vec3(given, "topple_velocity")).transpose()?;
         Ok(Self {
             file: character.file.clone(),
             def: character.def.clone(),
@@ -107,7 +115,8 @@ impl Actor {
             place,
             phase,
             name: name.to_owned(),
-            topples: topple.unwrap_or(nothing && return_at.is_none()),
+            topples: topple.unwrap_or(nothing && return_at.is_none() && velocity.is_none()),
+            topple_velocity: velocity.unwrap_or(Vec3::ZERO),
         })
     }
 }
@@ -117,13 +126,25 @@ struct Stage {
     colliders: Vec<Collider>,
     fields: Vec<FieldDef>,
     world: WorldDef,
+    key_bound: KeyBound,
     seconds: f32,
     fps: f32,
 }
 
+/// Makes the settings of the world of a bake from Python's arguments.
+fn bake_world(
+    gravity: Option<&Bound<'_, PyAny>>,
+    dt: f64,
+    substeps: u32,
+    quality: &str,
+) -> PyResult<WorldDef> {
+    let gravity = gravity.map(|gravity| vec3(gravity, "gravity")).transpose()?;
+    world_def(gravity, dt, substeps, quality, true)
+}
+
 /// Bakes characters in one world. A character that meets no other has the same bits as alone.
 #[pyfunction]
-#[pyo3(signature = (actors, *, seconds=10.0, fps=30.0, world=None, wind=None, gravity=None, progress=None))]
+#[pyo3(signature = (actors, *, seconds=10.0, fps=30.0, world=None, wind=None, fields=None, gravity=None, dt=1.0/60.0, substeps=4, quality="balanced", key_error=None, progress=None))]
 pub fn bake(
     py: Python<'_>,
     actors: Vec<Py<Actor>>,
@@ -131,10 +152,16 @@ pub fn bake(
     fps: f32,
     world: Option<&Bound<'_, PyAny>>,
     wind: Option<&Bound<'_, PyAny>>,
+    fields: Option<Vec<Py<Field>>>,
     gravity: Option<&Bound<'_, PyAny>>,
+    dt: f64,
+    substeps: u32,
+    quality: &str,
+    key_error: Option<(f32, f32)>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<Bake>> {
-    let stage = Stage::new(seconds, fps, world, wind, gravity)?;
+    let settings = bake_world(gravity, dt, substeps, quality)?;
+    let stage = Stage::new(seconds, fps, world, wind, fields, settings, key_error)?;
     let actors: Vec<&Actor> = actors.iter().map(|actor| actor.get()).collect();
     stage.bake(py, &actors, progress)
 }
@@ -145,20 +172,21 @@ impl Stage {
         fps: f32,
         world: Option<&Bound<'_, PyAny>>,
         wind: Option<&Bound<'_, PyAny>>,
-        gravity: Option<&Bound<'_, PyAny>>,
+        fields: Option<Vec<Py<Field>>>,
+        settings: WorldDef,
+        key_error: Option<(f32, f32)>,
     ) -> PyResult<Self> {
         check_length(seconds, fps)?;
         let wind = wind.map(|wind| vec3(wind, "wind")).transpose()?;
         let wind = wind.map(|velocity| FieldDef::new(FieldKind::Wind(Wind { velocity, ..Wind::default() })));
-        let default = WorldDef::default();
-        let gravity = gravity.map(|gravity| vec3(gravity, "gravity")).transpose()?.unwrap_or(default.gravity);
-        Ok(Self {
-            colliders: world_of(world)?,
-            fields: wind.into_iter().collect(),
-            world: WorldDef { gravity, ..default },
-            seconds,
-            fps,
-        })
+        let others = fields.unwrap_or_default();
+        let fields = wind.into_iter().chain(others.iter().map(|field| field.get().def.clone())).collect();
+        let key_bound = match key_error {
+            None => KEY_BOUND,
+            Some((distance, angle)) if distance >= 0.0 && angle >= 0.0 => KeyBound { distance, angle },
+            Some(wrong) => return Err(bad(format!("key_error must not be negative, not {wrong:?}"))),
+        };
+        Ok(Self { colliders: world_of(world)?, fields, world: settings, key_bound, seconds, fps })
     }
 
     fn bake(&self, py: Python<'_>, actors: &[&Actor], progress: Option<Py<PyAny>>) -> PyResult<Vec<Bake>> {
@@ -183,6 +211,8 @@ impl Stage {
                 limp_at: actor.limp_at,
                 seconds: self.seconds,
                 fps: self.fps,
+                key_bound: self.key_bound,
+                topple: actor.topple_velocity,
                 name: &actor.name,
                 ..BakeInput::new(actor.def.clone())
             }
@@ -278,7 +308,7 @@ impl Character {
 
     /// Simulates the character: walking, hit, falling, getting up. Without any action, it goes limp after half a
     /// second.
-    #[pyo3(signature = (*, seconds=10.0, fps=30.0, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, world=None, wind=None, gravity=None, pose=None, phase=0.0, name="sinew", progress=None))]
+    #[pyo3(signature = (*, seconds=10.0, fps=30.0, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, topple_velocity=None, world=None, wind=None, fields=None, gravity=None, dt=1.0/60.0, substeps=4, quality="balanced", key_error=None, pose=None, phase=0.0, name="sinew", progress=None))]
     fn bake(
         slf: PyRef<'_, Self>,
         py: Python<'_>,
@@ -291,9 +321,15 @@ impl Character {
         return_at: Option<f32>,
         return_seconds: f32,
         topple: Option<bool>,
+        topple_velocity: Option<&Bound<'_, PyAny>>,
         world: Option<&Bound<'_, PyAny>>,
         wind: Option<&Bound<'_, PyAny>>,
+        fields: Option<Vec<Py<Field>>>,
         gravity: Option<&Bound<'_, PyAny>>,
+        dt: f64,
+        substeps: u32,
+        quality: &str,
+        key_error: Option<(f32, f32)>,
         pose: Option<&Bound<'_, PyAny>>,
         phase: f32,
         name: &str,
@@ -308,13 +344,40 @@ impl Character {
             return_at,
             return_seconds,
             topple,
+            topple_velocity,
             pose,
             phase,
             name,
         )?;
-        let stage = Stage::new(seconds, fps, world, wind, gravity)?;
+        let settings = bake_world(gravity, dt, substeps, quality)?;
+        let stage = Stage::new(seconds, fps, world, wind, fields, settings, key_error)?;
         let mut baked = stage.bake(py, &[&actor], progress)?;
         Ok(baked.pop().expect("one for each"))
+    }
+
+    /// Returns a copy with other settings of falls, hits, getting up and motions.
+    #[pyo3(signature = (**settings))]
+    fn edited(&self, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let def = Arc::new(edited(&self.def, settings)?);
+        Ok(Self { file: self.file.clone(), def })
+    }
+
+    /// Returns a copy scaled by a factor: a child, a giant. A bake of it has no clip for the file.
+    fn scaled(&self, factor: f32) -> PyResult<Self> {
+        let def = Arc::new(refused(|| self.def.scaled(factor))?);
+        Ok(Self { file: self.file.clone(), def })
+    }
+
+    /// Radius of a mover that keeps all bodies on its side of a wall while the looped clip plays, metres.
+    #[getter]
+    fn swept_radius(&self) -> f32 {
+        self.def.swept_radius()
+    }
+
+    /// Names of the clips that it knows, its own and Sinew's.
+    #[getter]
+    fn clips(&self) -> Vec<&str> {
+        self.def.motions().clips.iter().map(|clip| clip.name.as_str()).collect()
     }
 
     /// Simulates a random fall: pose within the limits, ground and hit from the seed; the same bits on every
@@ -463,6 +526,36 @@ impl Bake {
     #[getter]
     fn reasons(&self) -> Vec<&str> {
         self.reasons.iter().map(String::as_str).collect()
+    }
+
+    /// Number of simulated steps.
+    #[getter]
+    fn steps(&self) -> u64 {
+        self.baked.steps
+    }
+
+    /// Number of bodies of the ragdoll.
+    #[getter]
+    fn bodies(&self) -> usize {
+        self.baked.bodies
+    }
+
+    /// Largest error of the clip's keys against the frames: metres and radians.
+    #[getter]
+    fn key_error(&self) -> (f32, f32) {
+        (self.baked.key_error.distance, self.baked.key_error.angle)
+    }
+
+    /// Number of keys before and after the reduction.
+    #[getter]
+    fn keys(&self) -> (usize, usize) {
+        self.baked.keys.into()
+    }
+
+    /// Matrix from the file's model space to the world, (3, 4).
+    #[getter]
+    fn world_from_model<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+        affine(py, &self.baked.world_from_model)
     }
 
     /// Hash of the final state.

@@ -5,11 +5,15 @@
 mod arrays;
 mod bake;
 mod batch;
+mod character_settings;
 mod collider;
 mod drive;
 mod errors;
+mod field;
 mod file;
 mod live;
+mod mover;
+mod particles;
 mod ragdoll;
 mod rig_arrays;
 mod world;
@@ -30,6 +34,10 @@ fn _sinew(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<bake::Bake>()?;
     module.add_class::<collider::Collider>()?;
     module.add_class::<drive::Drive>()?;
+    module.add_class::<field::Field>()?;
+    module.add_class::<particles::Particles>()?;
+    module.add_class::<particles::LiveParticles>()?;
+    module.add_class::<mover::Mover>()?;
     module.add_class::<live::LiveCharacter>()?;
     module.add_class::<world::World>()?;
     module.add_class::<batch::BatchWorlds>()?;

@@ -1,15 +1,18 @@
 //! Characters in a world of Python.
 
-use crate::arrays::{array, floats, poses, push_pose, vec3};
+use crate::arrays::{affine, array, floats, poses, push_pose, vec3};
 use crate::bake::{event_name, state_name};
 use crate::drive::{Drive, body_named};
 use crate::errors::{bad, guarded, refused};
+use crate::mover::Mover;
+use crate::particles::LiveParticles;
 use crate::world::World;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
+use sinew::anim::LocalTransform;
 use sinew::math::{Affine, Transform, Vec3};
-use sinew::physics::BodyId;
-use sinew::ragdoll::{CharacterDef, Detail, Grab, Grip, Preset};
+use sinew::physics::{BodyHit, BodyId, Strength};
+use sinew::ragdoll::{AfterSettling, CharacterDef, Detail, Grab, Grip, Preset};
 use std::sync::Arc;
 
 /// Character in a world; it is updated after every step.
@@ -52,6 +55,19 @@ impl LiveCharacter {
     }
 }
 
+/// Translations and rotations of joints.
+type JointArrays<'py> = (Bound<'py, PyArrayDyn<f32>>, Bound<'py, PyArrayDyn<f32>>);
+/// Pose of a character, and translations and rotations of its joints.
+type PoseArrays<'py> = (Bound<'py, PyArray1<f32>>, Bound<'py, PyArrayDyn<f32>>, Bound<'py, PyArrayDyn<f32>>);
+
+fn translations_of(pose: &[LocalTransform]) -> Vec<f32> {
+    pose.iter().flat_map(|joint| joint.translation.to_array()).collect()
+}
+
+fn rotations_of(pose: &[LocalTransform]) -> Vec<f32> {
+    pose.iter().map(|joint| joint.rotation).flat_map(|q| [q.x, q.y, q.z, q.w]).collect()
+}
+
 /// Reads a pose from seven numbers.
 pub fn one_pose(given: &Bound<'_, PyAny>) -> PyResult<Transform> {
     Ok(poses(&floats(given, &[Some(7)], "pose")?, "pose")?[0])
@@ -82,20 +98,97 @@ impl LiveCharacter {
     /// Positions of all joints relative to their parents, (joints, 3), units of the file.
     #[getter]
     fn translations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-        let numbers = self.read(py, |character| {
-            character.pose().iter().flat_map(|joint| joint.translation.to_array()).collect()
-        })?;
+        let numbers = self.read(py, |character| translations_of(character.pose()))?;
         self.joints(py, numbers, 3)
     }
 
     /// Rotations of all joints relative to their parents, (joints, 4), x y z w.
     #[getter]
     fn rotations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-        let numbers = self.read(py, |character| {
-            let rotations = character.pose().iter().map(|joint| joint.rotation);
-            rotations.flat_map(|q| [q.x, q.y, q.z, q.w]).collect()
-        })?;
+        let numbers = self.read(py, |character| rotations_of(character.pose()))?;
         self.joints(py, numbers, 4)
+    }
+
+    /// The pose without the motion of springs: translations (joints, 3) and rotations (joints, 4) relative to the parents.
+    fn pose_without_springs<'py>(&self, py: Python<'py>) -> PyResult<JointArrays<'py>> {
+        let read = |pose: &[LocalTransform]| (translations_of(pose), rotations_of(pose));
+        let (places, turns) = self.read(py, |character| read(character.pose_without_springs()))?;
+        Ok((self.joints(py, places, 3)?, self.joints(py, turns, 4)?))
+    }
+
+    /// The pose `alpha` between the last two steps: of the character (7,), and of the joints relative to their parents, translations
+    /// (joints, 3) and rotations (joints, 4).
+    fn interpolated<'py>(&self, py: Python<'py>, alpha: f32) -> PyResult<PoseArrays<'py>> {
+        let mut pose = Vec::new();
+        let place = self.read(py, |character| character.interpolated(alpha, &mut pose))?;
+        let mut numbers = Vec::new();
+        push_pose(&mut numbers, &place);
+        let translations = self.joints(py, translations_of(&pose), 3)?;
+        let rotations = self.joints(py, rotations_of(&pose), 4)?;
+        Ok((PyArray1::from_vec(py, numbers), translations, rotations))
+    }
+
+    /// Matrix from the file's model space to the world, (3, 4).
+    #[getter]
+    fn world_from_model<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+        let matrix = self.read(py, sinew::ragdoll::Character::world_from_model)?;
+        affine(py, &matrix)
+    }
+
+    /// True if the character is powered and takes steps to catch a push.
+    #[getter]
+    fn stumbles(&self, py: Python<'_>) -> PyResult<bool> {
+        self.read(py, sinew::ragdoll::Character::stumbles)
+    }
+
+    /// Level of detail: full, hit_bodies, keyed or frozen.
+    #[getter]
+    fn level_of_detail(&self, py: Python<'_>) -> PyResult<&'static str> {
+        Ok(match self.read(py, sinew::ragdoll::Character::level_of_detail)? {
+            Detail::Full => "full",
+            Detail::HitBodies => "hit_bodies",
+            Detail::Keyed => "keyed",
+            Detail::Frozen => "frozen",
+        })
+    }
+
+    /// True if the character gets up once it lies still.
+    #[getter]
+    fn gets_up(&self, py: Python<'_>) -> PyResult<bool> {
+        Ok(self.read(py, sinew::ragdoll::Character::after_settling)? == AfterSettling::GetUp)
+    }
+
+    /// Sets whether the character gets up once it lies still.
+    fn set_gets_up(&self, py: Python<'_>, gets_up: bool) -> PyResult<()> {
+        let after = if gets_up { AfterSettling::GetUp } else { AfterSettling::StayDown };
+        self.act(py, |character, _| character.set_after_settling(after))
+    }
+
+    /// Mover of the character; None if it has none at present.
+    #[getter]
+    fn mover(&self, py: Python<'_>) -> PyResult<Option<Mover>> {
+        let id = self.read(py, sinew::ragdoll::Character::mover)?;
+        Ok(id.map(|id| Mover { world: self.world.clone_ref(py), id }))
+    }
+
+    /// Particles of the character's garments.
+    #[getter]
+    fn garments(&self, py: Python<'_>) -> PyResult<Vec<LiveParticles>> {
+        let groups = self.read(py, |character| character.garments().to_vec())?;
+        let world = self.world.borrow(py);
+        let made = groups.into_iter().map(|group| LiveParticles {
+            world: self.world.clone_ref(py),
+            group,
+            triangles: world.world.particles(group).faces().as_flattened().to_vec(),
+        });
+        Ok(made.collect())
+    }
+
+    /// Joints whose limbs were detached.
+    #[getter]
+    fn lost_joints(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let lost = self.read(py, sinew::ragdoll::Character::lost_joints)?;
+        Ok(lost.into_iter().map(|joint| self.def.rig.joints[joint].name.clone()).collect())
     }
 
     /// Positions of all joints in the world, (joints, 3), metres.
@@ -162,6 +255,21 @@ impl LiveCharacter {
         self.act(py, |character, world| character.hit(world, body, impulse))
     }
 
+    /// Hits a body of the character, given by its id in the world, at a point, with an impulse in N·s; returns the work of the impulse, J,
+    /// or None if the body does not belong to the character.
+    fn hit_at(
+        &self,
+        py: Python<'_>,
+        body: u64,
+        point: &Bound<'_, PyAny>,
+        impulse: &Bound<'_, PyAny>,
+    ) -> PyResult<Option<f32>> {
+        let body = self.world.borrow(py).body(body)?;
+        let (point, impulse) = (vec3(point, "point")?, vec3(impulse, "impulse")?);
+        let hit = BodyHit { body, shape: 0, fraction: 0.0, point, normal: Vec3::Y, start: None };
+        self.act(py, |character, world| character.hit_at(world, &hit, impulse))
+    }
+
     /// Makes the character limp.
     fn go_limp(&self, py: Python<'_>) -> PyResult<()> {
         self.act(py, |character, world| character.go_limp(world))
@@ -212,7 +320,7 @@ impl LiveCharacter {
     }
 
     /// Makes a bone hold a dynamic body of the world; `pose` is the body's pose in the bone's frame. Returns the joint's id.
-    #[pyo3(signature = (bone, body, *, pose=None, drops=false))]
+    #[pyo3(signature = (bone, body, *, pose=None, drops=false, max_force=f32::INFINITY, max_torque=f32::INFINITY))]
     fn hold(
         &self,
         py: Python<'_>,
@@ -220,17 +328,20 @@ impl LiveCharacter {
         body: u64,
         pose: Option<&Bound<'_, PyAny>>,
         drops: bool,
+        max_force: f32,
+        max_torque: f32,
     ) -> PyResult<u64> {
         body_named(&self.def, bone)?;
         let body = self.world.borrow(py).body(body)?;
         let bone_from_held = pose.map(one_pose).transpose()?.unwrap_or(Transform::IDENTITY);
-        let grip = Grip { bone_from_held, drops, ..Grip::default() };
+        let grip =
+            Grip { bone_from_held, drops, strength: Strength { force: max_force, torque: max_torque } };
         Ok(self.act(py, |character, world| character.hold(world, bone, body, &grip))?.to_bits())
     }
 
     /// Makes a bone grab a body within reach, also one of another character; returns the joint's id, or None if the body is out of
     /// reach.
-    #[pyo3(signature = (bone, body, *, max_force=1300.0, reach=0.25))]
+    #[pyo3(signature = (bone, body, *, max_force=1300.0, reach=0.25, slip=0.4, speed=1.0, to=None, drops=true))]
     fn grab(
         &self,
         py: Python<'_>,
@@ -238,10 +349,15 @@ impl LiveCharacter {
         body: u64,
         max_force: f32,
         reach: f32,
+        slip: f32,
+        speed: f32,
+        to: Option<&Bound<'_, PyAny>>,
+        drops: bool,
     ) -> PyResult<Option<u64>> {
         body_named(&self.def, bone)?;
         let body = self.world.borrow(py).body(body)?;
-        let grab = Grab { max_force, reach, ..Grab::HAND };
+        let to = to.map(|to| vec3(to, "to")).transpose()?;
+        let grab = Grab { max_force, reach, slip, to, speed, drops };
         let joint = self.act(py, |character, world| character.grab(world, bone, body, &grab))?;
         Ok(joint.map(|joint| joint.to_bits()))
     }

@@ -4,7 +4,10 @@ use crate::arrays::{array, elements, floats, poses, push_pose, push_velocity, ve
 use crate::bake::Character;
 use crate::collider::{Collider, parted};
 use crate::errors::{SinewError, bad, guarded, refused};
+use crate::field::{Field, fade_named};
 use crate::live::{LiveCharacter, one_pose};
+use crate::mover::Mover;
+use crate::particles::{LiveParticles, Particles};
 use crate::ragdoll::Ragdoll;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
@@ -14,8 +17,8 @@ use sinew::math::{Range, Reader, Rotation, Transform, Vec3, Writer};
 use sinew::physics::ray::Ray;
 use sinew::physics::stage::NoProfiler;
 use sinew::physics::{
-    BodyDef, BodyHit, BodyId, BodyKind, FieldDef, FieldId, FieldKind, Gusts, JointDef, JointId, JointKind,
-    Material, Motor, OverlapWith, Probe, Quality, Shape, ShapeDef, Sleeping, Softness, Threads, Velocity,
+    BodyDef, BodyHit, BodyId, BodyKind, Explosion, FieldId, JointDef, JointId, JointKind, Material, Motor,
+    MoverDef, Occlusion, OverlapWith, Probe, Quality, Shape, ShapeDef, Sleeping, Softness, Threads, Velocity,
     Wind, WorldDef,
 };
 use sinew::ragdoll::BodyState;
@@ -218,6 +221,11 @@ impl World {
         Ok(id.to_bits())
     }
 
+    /// Adds a field and returns its id.
+    fn add_field(&mut self, field: PyRef<'_, Field>) -> PyResult<u64> {
+        Ok(refused(|| self.world.add_field(&field.def))?.to_bits())
+    }
+
     /// Adds wind, m/s, and returns its id; gusts with a speed (m/s), a length (m) and a time (s) may be added.
     #[pyo3(signature = (velocity, *, gust_speed=0.0, gust_length=3.0, gust_time=1.0, seed=0))]
     fn add_wind(
@@ -228,11 +236,52 @@ impl World {
         gust_time: f32,
         seed: u64,
     ) -> PyResult<u64> {
-        let velocity = vec3(velocity, "velocity")?;
-        let gusts = Gusts { speed: gust_speed, length: gust_length, time: gust_time, seed };
-        let gusts = (gust_speed != 0.0).then_some(gusts);
-        let wind = FieldDef::new(FieldKind::Wind(Wind { velocity, gusts, ..Wind::default() }));
-        Ok(refused(|| self.world.add_field(&wind))?.to_bits())
+        let usual = Wind::default();
+        let (density, drag, lift) = (usual.density, usual.drag, usual.lift);
+        let wind = Field::wind(velocity, density, drag, lift, gust_speed, gust_length, gust_time, seed)?;
+        Ok(refused(|| self.world.add_field(&wind.def))?.to_bits())
+    }
+
+    /// Explodes at a point: everything within the radius, metres, gets an impulse per area, N·s/m² at the centre.
+    #[pyo3(signature = (center, radius, impulse, *, fade="linear", sheltered=false))]
+    fn explode(
+        &mut self,
+        center: &Bound<'_, PyAny>,
+        radius: f32,
+        impulse: f32,
+        fade: &str,
+        sheltered: bool,
+    ) -> PyResult<()> {
+        let occlusion = if sheltered { Occlusion::Static } else { Occlusion::None };
+        let fade = fade_named(fade)?;
+        let blast = Explosion { fade, occlusion, ..Explosion::new(vec3(center, "center")?, radius, impulse) };
+        blast.check().map_err(|what| bad(what.to_string()))?;
+        refused(|| self.world.explode(&blast))
+    }
+
+    /// Adds particles: a rope, cloth or a soft ball.
+    fn add_particles(slf: &Bound<'_, Self>, particles: PyRef<'_, Particles>) -> PyResult<LiveParticles> {
+        let mut world = slf.borrow_mut();
+        let def = particles.in_world(&world)?;
+        let group = refused(|| world.world.add_particles(&def))?;
+        Ok(LiveParticles { world: slf.clone().unbind(), group, triangles: particles.triangles().to_vec() })
+    }
+
+    /// Adds a mover: an upright capsule, given by its lowest point, that walks, climbs steps and jumps.
+    #[pyo3(signature = (position, *, radius=0.3, height=1.8, mass=80.0, push_force=800.0, step_height=0.35))]
+    fn add_mover(
+        slf: &Bound<'_, Self>,
+        position: &Bound<'_, PyAny>,
+        radius: f32,
+        height: f32,
+        mass: f32,
+        push_force: f32,
+        step_height: f32,
+    ) -> PyResult<Mover> {
+        let position = vec3(position, "position")?;
+        let def = MoverDef { position, radius, height, mass, push_force, step_height, ..MoverDef::default() };
+        let id = refused(|| slf.borrow_mut().world.add_mover(&def))?;
+        Ok(Mover { world: slf.clone().unbind(), id })
     }
 
     /// Removes a field.

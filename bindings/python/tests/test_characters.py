@@ -356,6 +356,23 @@ class TestFormats:
                     limit = UsdPhysics.LimitAPI(prim, axis)
                     assert [limit.GetLowAttr().Get(), limit.GetHighAttr().Get()] == pytest.approx(limits[key], abs=1e-3)
 
+    def test_usd_is_written_as_text_and_as_binary(self, character, tmp_path):
+        pytest.importorskip("pxr")
+        from pxr import Usd
+
+        from sinew import usd
+
+        baked = character.bake(seconds=1)
+        stages = []
+        for name in ("fall.usda", "fall.usdc"):
+            assert any("friction" in note for note in usd.save(baked, tmp_path / name))
+            stages.append(Usd.Stage.Open(str(tmp_path / name)))
+        assert (tmp_path / "fall.usdc").read_bytes()[:8] == b"PXR-USDC"
+        text, binary = ([prim.GetPath() for prim in stage.Traverse()] for stage in stages)
+        assert text == binary and len(text) > 50
+        with pytest.raises(ValueError, match="ends with .usda or .usdc"):
+            usd.save(baked, tmp_path / "fall.usdz")
+
     def test_a_urdf_is_a_model(self, tmp_path):
         path = tmp_path / "arm.urdf"
         path.write_text(

@@ -267,5 +267,5 @@ class TestBake:
             character.bake(seconds=float("nan"))
         with pytest.raises(sinew.FileError, match="nowhere.json"):
             character.bake(world=Path("nowhere.json"))
-        with pytest.raises(sinew.FileError, match="no clip is called 'dance'"):
+        with pytest.raises(ValueError, match="no clip is called 'dance'; there are walk, "):
             mannequin.character(clip="dance")

@@ -60,7 +60,7 @@ mod source;
 #[cfg(feature = "formats")]
 pub use loaded::{LoadCharacterError, LoadedCharacter, character_of, load_character};
 #[cfg(feature = "formats")]
-pub use source::CharacterSource;
+pub use source::{CharacterSource, character_hints};
 
 /// Reads a character from a GLB, glTF, VRM or VRMA with the files next to it: rig, clips, and the data needed to write
 /// a clip back into the same file. Pictures are left out.

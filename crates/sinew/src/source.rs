@@ -1,13 +1,30 @@
 //! A character file before its ragdoll is built.
 
 use crate::anim::legs::add_ankles;
-use crate::anim::{Garment, Hints, JointIdx, NoSkin, RigAnalysis, Springs, analyze_hinted, characters};
+use crate::anim::{
+    Clip, Garment, Hints, JointIdx, NoSkin, Rig, RigAnalysis, Springs, analyze_hinted, characters,
+};
 use crate::formats::Document;
 use crate::math::Vec3;
 use crate::ragdoll::build::{BuildReport, takes};
 use crate::ragdoll::settings::{SpringSource, analyze_with};
 use crate::ragdoll::{BuildError, BuildOptions, RagdollDef, Settings, SettingsError, build_moving};
 use std::path::Path;
+
+/// Returns the hints for the analysis of a character's file: its name or path, clips and exporter.
+///
+/// # Panics
+/// As [`Hints::of_clips`].
+pub fn character_hints(name: &str, rig: &Rig, clips: &[Clip], exporter: &str) -> Hints {
+    let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    Hints {
+        name: stem.unwrap_or_default(),
+        // Readers convert every format to +Y up.
+        up: Some(Vec3::Y),
+        exporter: exporter.to_owned(),
+        ..Hints::of_clips(rig, clips)
+    }
+}
 
 /// A character file and its analysis, for running the stages of [`load_character`](crate::load_character) one by one:
 /// [`new`](Self::new), then [`hint`](Self::hint) and [`keep`](Self::keep) as needed, [`correct`](Self::correct), and
@@ -18,7 +35,7 @@ pub struct CharacterSource {
     pub document: Document,
     /// Analysis of the rig's joints.
     pub analysis: RigAnalysis,
-    /// Joints of the garments in the settings, which are not part of the body.
+    /// Joints of the garments in the settings and joints to ignore, which with all below are not part of the body.
     pub worn: Vec<JointIdx>,
 }
 
@@ -28,14 +45,7 @@ impl CharacterSource {
     /// # Errors
     /// If no vertex is bound to a joint.
     pub fn new(document: Document, name: &str) -> Result<Self, NoSkin> {
-        let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        let hints = Hints {
-            name: stem.unwrap_or_default(),
-            // Readers convert every format to +Y up.
-            up: Some(Vec3::Y),
-            exporter: document.generator().to_owned(),
-            ..Hints::of_clips(&document.rig, &document.clips)
-        };
+        let hints = character_hints(name, &document.rig, &document.clips, document.generator());
         let analysis = analyze_hinted(&document.rig, &hints)?;
         Ok(Self { document, analysis, worn: Vec::new() })
     }
@@ -125,7 +135,7 @@ impl CharacterSource {
 
     fn apply(&mut self, settings: &Settings) -> Result<(), SettingsError> {
         self.analysis = analyze_with(&self.document.rig, &self.analysis, settings)?;
-        self.worn = settings.garments.joints(&self.document.rig)?;
+        self.worn = settings.ignored_joints(&self.document.rig)?;
         Ok(())
     }
 

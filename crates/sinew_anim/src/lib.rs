@@ -70,8 +70,8 @@ pub use pose::{
 };
 pub use rig::{Joint, JointIdx, LocalTransform, Primitive, Rig, RigMesh, Skin, TextureImage};
 pub use roles::{
-    Basis, Correction, CorrectionError, Gait, Hints, KeptBone, NoSkin, RigAnalysis, Role, RoleGuess, Side,
-    UnitGuess, analyze, analyze_corrected, analyze_hinted, analyze_skeleton, characters,
+    Animal, Basis, Correction, CorrectionError, Gait, Hints, KeptBone, NoSkin, RigAnalysis, Role, RoleGuess,
+    Side, UnitGuess, analyze, analyze_corrected, analyze_hinted, analyze_skeleton, characters,
 };
 pub use set::{AnimatedClip, AnimationSet, ClipId, MaskId};
 pub use skinning::{skin_palette, skin_vertices};

@@ -54,6 +54,11 @@ pub(crate) const STEP_FRAME_TIME: f64 = 1.0 / 60.0;
 /// Larger: a low swinging foot counts as standing. Smaller: runs have no footsteps. Shown by `sinew_cli` `convert`.
 pub(crate) const STEP_SLIDE: f32 = 0.2;
 
+/// Least net way of the lower foot of a walk on the spot, as a share of its whole way, 0 to 1.
+///
+/// Larger: drawn walks have no speed. Smaller: dances have one. Shown by the tests of `hints`.
+pub(crate) const ONE_WAY: f32 = 0.6;
+
 /// Largest rotation of a joint from the last pose of a loop to its first, radians, and largest displacement, as a share
 /// of the leg.
 ///

@@ -637,6 +637,12 @@ pub(crate) const SLIDES_LEAST: f32 = 0.03;
 /// Larger: pops count as good. Smaller: quick motion is reported. Shown by the tests of `rising`.
 pub(crate) const JUMPS: f32 = 0.03;
 
+/// Speed of trunk and head in the blend into a get-up clip beyond their fastest in the clip, as a share of √(g h): 1.5
+/// m/s for a man.
+///
+/// Larger: bodies that snap over count as good. Smaller: quick blends are reported. Shown by the tests of `rising`.
+pub(crate) const SNAPS: f32 = 0.35;
+
 /// Height over the floor up to which a sole point counts as on the floor, as a share of the character's height.
 ///
 /// Larger: steps count as slides. Smaller: skating just over the floor is missed. Shown by the tests of `rising`.
@@ -653,3 +659,35 @@ pub(crate) const HIPS_BEAR: f32 = 0.35;
 ///
 /// Larger: feet about to land are measured. Smaller: heels of lying legs are measured. Shown by the tests of `rising`.
 pub(crate) const STANDS_UPRIGHT: f32 = 0.8;
+
+/// Height over the ground from which a character counts as in the air, and drop of its ground that counts as an edge,
+/// metres: the highest step that it climbs.
+///
+/// Larger: walks beyond an edge count as good. Smaller: steps of stairs are reported. Shown by the tests of `faults`.
+pub(crate) const WALKS_ON_AIR: f32 = 0.45;
+
+/// Time in the air beyond an edge that is allowed, seconds.
+///
+/// Larger: short walks in the air count as good. Smaller: a step over a gap is reported. Shown by the tests of `faults`.
+pub(crate) const WALKS_ON_AIR_FOR: f32 = 0.2;
+
+/// Depth to which the judge searches ground, metres.
+///
+/// Larger: searches over pits are slower. Smaller: deep ground counts as none. Shown by the tests of `faults`.
+pub(crate) const GROUND_REACH: f32 = 1000.0;
+
+/// Factor beyond the usual masses of an animal from which a given mass is in doubt.
+///
+/// Larger: implausible masses count as good. Smaller: stylised animals are reported. Shown by `sinew_cli` `units`.
+pub(crate) const FAR_OFF: f32 = 2.0;
+
+/// Time between the poses of a clip at which its speed is measured, seconds.
+///
+/// Larger: quick motion is averaged. Smaller: the measurement is slower. Shown by the tests of `rising`.
+pub(crate) const CLIP_FRAME: f32 = 1.0 / 30.0;
+
+/// Time from the start of a get-up within which the speed of the blend is measured, seconds; slightly longer than the
+/// blend.
+///
+/// Larger: motion of the clip counts. Smaller: the end of the blend is missed. Shown by the tests of `rising`.
+pub(crate) const BLENDS_FOR: f32 = 0.4;

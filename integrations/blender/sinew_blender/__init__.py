@@ -10,9 +10,9 @@ bl_info = {
     "category": "Animation",
 }
 
-from . import operators, overlay, panels, properties  # noqa: E402
+from . import handles, operators, overlay, overrides, panels, preview, properties  # noqa: E402
 
-MODULES = (properties, operators, panels, overlay)
+MODULES = (properties, operators, panels, overlay, handles, preview, overrides)
 
 
 def register():

@@ -38,6 +38,14 @@ def show(arm):
                     setattr(settings, key, [math.radians(x) for x in limits[key]])
 
 
+def edits(arm):
+    """Number of bones whose bodies differ from those that were built."""
+    if not arm.sinew.definition or not arm.sinew.fitted:
+        return 0
+    fitted = {body["bone"]: body for body in json.loads(arm.sinew.fitted)["bodies"]}
+    return sum(body != fitted.get(body["bone"]) for body in json.loads(arm.sinew.definition)["bodies"])
+
+
 def _size(arm, body):
     """Size of a body's shape relative to the fitted one."""
     fitted = next((b for b in json.loads(arm.sinew.fitted)["bodies"] if b["bone"] == body["bone"]), body)
@@ -64,7 +72,7 @@ def edit(arm, name):
     if settings.has_swing:
         # The range of a swing must include zero.
         wanted["swing_y"], wanted["swing_z"] = (
-            (min(v[0], 0.0), max(v[1], 0.0)) for v in (settings.swing_y, settings.swing_z)
+            (min(*v, 0.0), max(*v, 0.0)) for v in (settings.swing_y, settings.swing_z)
         )
     if settings.has_twist:
         low, high = settings.twist

@@ -137,11 +137,24 @@ def clear(arm):
             restore_pose(arm)
         if made is not None and data.action == made:
             put_back(arm)
+        take_from_track(arm, data)
     arm.sinew.own_action = arm.sinew.made_action = None
-    arm.sinew.own_pose = ""
+    arm.sinew.own_pose = arm.sinew.own_track = ""
     if made is not None and made.users == 0:
         bpy.data.actions.remove(made)
     arm.sinew.keyed = ""
+
+
+def take_from_track(arm, data):
+    """Makes the user's Action active again that a strip put on a track; a track that the user changed since stays."""
+    action, track = arm.sinew.own_action, data.nla_tracks.get(arm.sinew.own_track) if arm.sinew.own_track else None
+    if track is None or data.action is not None or len(track.strips) != 1 or track.strips[0].action != action:
+        return
+    slot = getattr(track.strips[0], "action_slot", None)
+    data.nla_tracks.remove(track)
+    actions.assign(arm, action)
+    if slot is not None:
+        data.action_slot = slot
 
 
 def as_action(arm, names, fall):
@@ -166,6 +179,7 @@ def as_strip(arm, names, fall):
             strip.action_slot = slot
         strip.extrapolation = "HOLD"
         data.action = None
+        arm.sinew.own_action, arm.sinew.own_track = old, track.name
     action = bpy.data.actions.new(f"{PROXY}{arm.name}")
     arm.sinew.made_action = action
     actions.assign(arm, action)

@@ -1,13 +1,14 @@
 """Operators behind the buttons."""
 
 import json
+import os
 import time
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from mathutils import Matrix
 
-from . import bodies, bridge, keys, simulation
+from . import bodies, bridge, keys, preview, simulation
 from . import skeleton as sk
 from .skeleton import SinewError
 
@@ -34,6 +35,10 @@ def selected_armatures(context):
     return [active, *sorted(others, key=lambda ob: ob.name)]
 
 
+def counted(count, one, many):
+    return f"{count} {one if count == 1 else many}"
+
+
 class Sinew:
     """Base of all operators: shows errors as a line in the status bar."""
 
@@ -41,6 +46,7 @@ class Sinew:
 
     @classmethod
     def poll(cls, context):
+        cls.poll_message_set("Select an armature or one of its meshes")
         return active_armature(context) is not None
 
     def execute(self, context):
@@ -52,17 +58,19 @@ class Sinew:
 
 
 class SINEW_OT_build(Sinew, bpy.types.Operator):
-    """Build the ragdoll of the armature: bodies, limits and masses"""
+    """Build the ragdoll of the armature: bodies, limits and masses. Resets edits of bones"""
 
     bl_idname, bl_label = "sinew.build", "Build ragdoll"
 
     def act(self, context):
         for arm in selected_armatures(context):
-            arm.sinew.place = ""
+            arm.sinew.place, edits = "", bodies.edits(arm)
             ragdoll = bridge.build(arm)
             bodies.store(arm, ragdoll)
             examine(arm, ragdoll)
-            self.report({"INFO"}, f"{arm.name}: {len(ragdoll)} bodies, {ragdoll.total_mass:.1f} kg, {ragdoll.height:.2f} m")
+            self.report({"INFO"}, f"{arm.name}: {counted(len(ragdoll), 'body', 'bodies')}, {ragdoll.total_mass:.1f} kg, {ragdoll.height:.2f} m")
+            if edits:
+                self.report({"WARNING"}, f"{arm.name}: edits of {counted(edits, 'bone', 'bones')} were reset")
 
 
 class SINEW_OT_forget(Sinew, bpy.types.Operator):
@@ -73,16 +81,35 @@ class SINEW_OT_forget(Sinew, bpy.types.Operator):
     def act(self, context):
         for arm in selected_armatures(context):
             keys.clear(arm)
+            preview.clear(arm)
             for name in ("definition", "fitted", "place", "report"):
                 setattr(arm.sinew, name, "")
             arm.sinew.findings.clear()
             bodies.show(arm)
 
 
+# Texts of Sinew's commands, and what they are in Blender.
+HERE = (
+    ("Give `unit_scale` or `height` in settings (`--unit`, `--height`) if it is another.", "Set Height in the ragdoll panel if it is another, and build again."),
+    ("Give what sticks out a body (`--body`), say that it is no part of the body (`--ignore`), or", "Choose No body for bones of what sticks out, or"),
+    ("Give the joint that stays behind a body (`--body`), or say what it is (`--role`).", "Say by the bone's Role what the joint is that stays behind."),
+    ("Give that part a body (`--body`), leave it out (`--ignore`), or change the shape's `scale` in settings.", "Choose No body for that part's bone, or change Size."),
+    ("Say with `--role` which", "Say by the bone's Role which"),
+)
+
+
+def spoken(finding):
+    return finding["code"].replace("-", " ")
+
+
 def examine(arm, ragdoll):
     """Fills in the doctor's findings."""
     arm.sinew.findings.clear()
     for found in bridge.asked(ragdoll.doctor)["findings"]:
+        if found["code"] == "unit-inferred" and arm.sinew.height > 0:
+            continue
+        for text, here in HERE:
+            found["fix"] = found["fix"].replace(text, here)
         one = arm.sinew.findings.add()
         for key in ("code", "severity", "cause", "evidence", "fix"):
             setattr(one, key, found[key])
@@ -98,7 +125,7 @@ class SINEW_OT_doctor(Sinew, bpy.types.Operator):
     def act(self, context):
         arm = active_armature(context)
         count = examine(arm, bridge.ragdoll(arm))
-        self.report({"INFO"}, f"{count} findings" if count != 1 else "1 finding")
+        self.report({"INFO"}, counted(count, "finding", "findings"))
 
 
 class SINEW_OT_select_finding(Sinew, bpy.types.Operator):
@@ -139,14 +166,15 @@ class SINEW_OT_cure(Sinew, bpy.types.Operator):
         arm.sinew.definition = cured.to_json()
         bodies.show(arm)
         left = examine(arm, cured)
-        mended = sum(finding["fixed"] for finding in report["findings"])
-        self.report({"INFO"}, f"{mended} mended, {left} left")
+        mended = [finding for finding in report["findings"] if finding["fixed"]]
+        for finding in mended:
+            self.report({"INFO"}, f"{spoken(finding)}: {', '.join(finding['bones'])}")
+        kinds = f" ({', '.join(sorted({spoken(finding) for finding in mended}))})" if mended else ""
+        self.report({"INFO"}, f"{len(mended)} mended{kinds}, {left} left")
 
 
-class SINEW_OT_simulate(Sinew, bpy.types.Operator):
-    """Play your animation until the hand-over, simulate from there, and key the result. Esc cancels"""
-
-    bl_idname, bl_label = "sinew.simulate", "Simulate"
+class Simulates(Sinew):
+    """Base of the operators that simulate: in a window step by step, with progress, cancelled by Esc."""
 
     def act(self, context):
         job = simulation.prepare(context, selected_armatures(context))
@@ -218,12 +246,56 @@ class SINEW_OT_simulate(Sinew, bpy.types.Operator):
             if isinstance(job.error, SinewError):
                 raise job.error
             raise SinewError(f"The simulation failed: {job.error}")
+        for arm, ragdoll in job.built:
+            bodies.store(arm, ragdoll)
+            examine(arm, ragdoll)
+        job.notes += simulation.overlaps(job)
+        self.done(context, job)
+        for note in job.notes:
+            self.report({"WARNING"}, note)
+        redraw(context)
+        return {"FINISHED"}
+
+
+class SINEW_OT_simulate(Simulates, bpy.types.Operator):
+    """Play your animation until the hand-over, simulate from there, and key the result. Esc cancels"""
+
+    bl_idname, bl_label = "sinew.simulate", "Simulate"
+
+    def done(self, context, job):
         at = context.scene.frame_current
         ways = simulation.write(job, context.scene.sinew.keys)
         context.scene.frame_set(at)
+        for arm in job.arms:
+            preview.clear(arm)
         verdicts = ", ".join(f"{arm.name} {baked.verdict}" for arm, baked in zip(job.arms, job.baked))
         self.report({"INFO"}, f"{job.last - job.first + 1} frames as {', '.join(sorted(set(ways))).lower()}: {verdicts}")
-        return {"FINISHED"}
+
+
+class SINEW_OT_preview(Simulates, bpy.types.Operator):
+    """Simulate, and draw the fall over your animation without keys; scrub to see it. Esc cancels"""
+
+    bl_idname, bl_label, bl_options = "sinew.preview", "Preview", {"REGISTER"}
+
+    def done(self, context, job):
+        preview.show(job)
+        self.report({"INFO"}, f"Preview from frame {min(preview.of(arm).handover for arm in job.arms)} on: scrub to see it")
+
+
+class SINEW_OT_end_preview(Sinew, bpy.types.Operator):
+    """Stop drawing the preview"""
+
+    bl_idname, bl_label, bl_options = "sinew.end_preview", "End preview", {"REGISTER"}
+
+    def act(self, context):
+        for arm in selected_armatures(context):
+            preview.clear(arm)
+        redraw(context)
+
+
+def redraw(context):
+    for area in context.screen.areas if context.screen is not None else ():
+        area.tag_redraw()
 
 
 class SINEW_OT_clear(Sinew, bpy.types.Operator):
@@ -298,9 +370,10 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
             ("SINEW", "Sinew (.sinew.json)", "Definition that Sinew's commands and engines read"),
             ("MJCF", "MuJoCo (.xml)", "A model for MuJoCo"),
             ("GLB", "Character (.glb)", "Skeleton, skin and the sampled animation as Sinew has them"),
+            ("USD", "Fall (.usdc)", "Simulate, and write skeleton, skin, fall and physics as USD; a name with .usda makes text"),
         ),
     )
-    ENDS = {"SINEW": ".sinew.json", "MJCF": ".xml", "GLB": ".glb"}
+    ENDS = {"SINEW": ".sinew.json", "MJCF": ".xml", "GLB": ".glb", "USD": ".usdc"}
 
     def invoke(self, context, event):
         self.filepath = active_armature(context).name + self.ENDS[self.format]
@@ -310,8 +383,14 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
     def act(self, context):
         arm = active_armature(context)
         path = bpy.path.abspath(self.filepath)
-        path = path if path.endswith(self.ENDS[self.format]) else path + self.ENDS[self.format]
+        if not os.path.basename(path):
+            raise SinewError("Give the file a name: filepath has none")
+        is_text = self.format == "USD" and path.endswith(".usda")
+        path = path if is_text or path.endswith(self.ENDS[self.format]) else path + self.ENDS[self.format]
         try:
+            if self.format == "USD":
+                self.write_usd(context, arm, path)
+                return
             if self.format == "GLB":
                 first, last = simulation.frames_of(context.scene)
                 take = sk.sample(arm, sk.skeleton_of(arm), first, last)
@@ -324,8 +403,21 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
             with open(path, "wb") as file:
                 file.write(data)
         except OSError as error:
-            raise SinewError(f"{path}: {error.strerror}") from error
+            raise SinewError(f"{path}: {error.strerror or error}") from error
         self.report({"INFO"}, f"Wrote {path}")
+
+    def write_usd(self, context, arm, path):
+        from sinew import usd
+
+        job = simulation.prepare(context, [arm])
+        job.run()
+        if job.error is not None:
+            raise SinewError(str(job.error))
+        try:
+            notes = usd.save(job.baked[0], path)
+        except ImportError as error:
+            raise SinewError(str(error)) from error
+        self.report({"INFO"}, f"Wrote {path}: {'; '.join(notes)}")
 
 
 CLASSES = (
@@ -335,6 +427,8 @@ CLASSES = (
     SINEW_OT_select_finding,
     SINEW_OT_cure,
     SINEW_OT_simulate,
+    SINEW_OT_preview,
+    SINEW_OT_end_preview,
     SINEW_OT_clear,
     SINEW_OT_add_hit,
     SINEW_OT_collide,

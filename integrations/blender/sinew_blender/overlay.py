@@ -70,9 +70,24 @@ def limit_lines(joint, reach):
     return swing, twist
 
 
-def _frame(pose):
+def placed(pose):
     place, q = pose.get("position", (0, 0, 0)), pose.get("rotation", (0, 0, 0, 1))
     return Matrix.Translation(place) @ Quaternion((q[3], *q[:3])).to_matrix().to_4x4()
+
+
+def to_world_of(definition):
+    """From the definition's character space (metres) to Blender's world."""
+    unit = definition["unit_scale"]
+    model = placed(definition["character_from_model"]).inverted()
+    model.translation /= unit
+    return TO_Y.inverted() @ model @ Matrix.Scale(1.0 / unit, 4)
+
+
+def joint_frame(arm, definition, joint):
+    """The frame of a joint in the rest space of the bone that carries it."""
+    body = next(b for b in definition["bodies"] if b["bone"] == joint["parent"])
+    to_bone = (place_of(arm) @ arm.data.bones[body["bone"]].matrix_local).inverted() @ to_world_of(definition)
+    return to_bone @ placed(body) @ placed(joint["frame_in_parent"])
 
 
 def pieces(arm):
@@ -83,12 +98,8 @@ def pieces(arm):
     if kept is not None and kept[0] == key:
         return kept[1]
     definition, made = json.loads(text), {}
-    unit = definition["unit_scale"]
-    # From the definition's character space (metres) to Blender's world.
-    model = _frame(definition["character_from_model"]).inverted()
-    model.translation /= unit
-    to_world = TO_Y.inverted() @ model @ Matrix.Scale(1.0 / unit, 4)
-    reach_of = {b["bone"]: b for b in definition["bodies"]}
+    unit, to_world = definition["unit_scale"], to_world_of(definition)
+    reach_of = {b["bone"] for b in definition["bodies"]}
     rest = place_of(arm)
     for body in definition["bodies"]:
         name = body["bone"]
@@ -96,7 +107,7 @@ def pieces(arm):
         if bone is None:
             continue
         to_bone = (rest @ bone.matrix_local).inverted() @ to_world
-        own = to_bone @ _frame(body)
+        own = to_bone @ placed(body)
         lines = [own @ p for p in shape_lines(body["shape"])]
         swing, twist = [], []
         joint = body.get("joint")
@@ -105,7 +116,7 @@ def pieces(arm):
             carrier = joint["parent"]
             parent = arm.data.bones.get(carrier)
             if parent is not None:
-                frame = (rest @ parent.matrix_local).inverted() @ to_world @ _frame(reach_of[carrier]) @ _frame(joint["frame_in_parent"])
+                frame = joint_frame(arm, definition, joint)
                 reach = REACH * bone.length * rest.median_scale * unit
                 swing, twist = ([frame @ p for p in part] for part in limit_lines(joint, reach))
         center = own @ Vector(body["mass"].get("center", (0, 0, 0)))

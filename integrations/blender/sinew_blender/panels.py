@@ -4,6 +4,7 @@ import json
 
 import bpy
 
+from . import preview
 from .operators import active_armature
 
 ICONS = {"error": "CANCEL", "warning": "ERROR", "note": "INFO"}
@@ -55,7 +56,7 @@ class SINEW_PT_doctor(Side, bpy.types.Panel):
         for index, finding in enumerate(settings.findings):
             box = layout.box()
             head = box.row()
-            head.label(text=finding.code.replace("_", " "), icon=ICONS.get(finding.severity, "INFO"))
+            head.label(text=finding.code.replace("-", " "), icon=ICONS.get(finding.severity, "INFO"))
             head.operator("sinew.select_finding", text="", icon="RESTRICT_SELECT_OFF").index = index
             if index == settings.finding:
                 for text in (finding.cause, finding.evidence, finding.fix):
@@ -101,11 +102,18 @@ class SINEW_PT_simulate(Side, bpy.types.Panel):
         row.operator("sinew.simulate", icon="PHYSICS")
         row.operator("sinew.clear", text="", icon="TRASH")
         arm = active_armature(context)
+        row = layout.row(align=True)
+        row.operator("sinew.preview", icon="GHOST_ENABLED")
+        ghost = preview.of(arm) if arm is not None else None
+        if ghost is not None:
+            row.operator("sinew.end_preview", text="", icon="X")
+            if ghost.stamp != preview.stamp(context.scene, arm):
+                layout.label(text="Settings changed since: preview again", icon="ERROR")
         if arm is not None and arm.sinew.report:
             report = json.loads(arm.sinew.report)
             box = layout.column()
             box.label(text=f"{report['verdict']}, {report['frames']} frames from {report['handover']}")
-            for reason in report["reasons"][:3]:
+            for reason in [*report.get("notes", ()), *report["reasons"][:3]]:
                 for line in wrapped(reason, max(24, context.region.width // 8)):
                     box.label(text=line)
             if arm.sinew.keyed == "PROXY":
@@ -148,7 +156,7 @@ class SINEW_PT_export(Side, bpy.types.Panel):
     def draw(self, context):
         layout = self.layout
         layout.operator_context = "INVOKE_DEFAULT"
-        for name, text in (("SINEW", "Ragdoll"), ("MJCF", "MuJoCo"), ("GLB", "Character")):
+        for name, text in (("SINEW", "Ragdoll"), ("MJCF", "MuJoCo"), ("GLB", "Character"), ("USD", "Fall as USD")):
             layout.operator("sinew.export", text=text, icon="EXPORT").format = name
 
 
@@ -192,6 +200,7 @@ class SINEW_MT_pie(bpy.types.Menu):
         pie.operator("sinew.doctor", icon="VIEWZOOM")
         pie.operator("sinew.add_hit", icon="EMPTY_SINGLE_ARROW")
         pie.operator("sinew.clear", icon="TRASH")
+        pie.operator("sinew.preview", icon="GHOST_ENABLED")
 
 
 CLASSES = (

@@ -71,6 +71,8 @@ class ArmatureSettings(bpy.types.PropertyGroup):
     # Values of the bones' channels before they were keyed.
     own_pose: StringProperty()
     own_action: PointerProperty(type=bpy.types.Action)
+    # Name of the track that took the user's Action below a strip.
+    own_track: StringProperty()
     made_action: PointerProperty(type=bpy.types.Action)
     height: FloatProperty(name="Height", description="Height of the character in metres; 0: read from the armature", min=0, soft_max=4)
     mass: FloatProperty(name="Mass", description="Mass of the character in kg; 0: by its height and volume", min=0, soft_max=300)
@@ -80,6 +82,22 @@ class ArmatureSettings(bpy.types.PropertyGroup):
     show_masses: BoolProperty(name="Masses", default=False, description="Write the mass at each body")
     findings: CollectionProperty(type=Finding)
     finding: IntProperty()
+
+
+class Override(bpy.types.PropertyGroup):
+    """The ragdoll of a library override, see `overrides`."""
+
+    armature: PointerProperty(type=bpy.types.Object)
+    definition: StringProperty()
+    fitted: StringProperty()
+    place: StringProperty()
+    report: StringProperty()
+    keyed: StringProperty()
+    own_pose: StringProperty()
+    own_action: PointerProperty(type=bpy.types.Action)
+    # Name of the track that took the user's Action below a strip.
+    own_track: StringProperty()
+    made_action: PointerProperty(type=bpy.types.Action)
 
 
 class BodySettings(bpy.types.PropertyGroup):
@@ -92,10 +110,11 @@ class HitSettings(bpy.types.PropertyGroup):
     armature: PointerProperty(type=bpy.types.Object, name="Armature", poll=lambda self, ob: ob.type == "ARMATURE")
     bone: StringProperty(name="Bone")
     frame: IntProperty(name="Frame", default=45)
-    impulse: FloatProperty(name="Impulse", description="N·s: a shove is 50 to 100, a punch 30, a car 1,000 and more", default=100, min=0)
+    impulse: FloatProperty(name="Impulse", description="N·s: a shove is 50 to 100, a punch 30, a car 1,000 and more; at most 30 m/s times the character's mass, and 1,500 m/s times the bone's", default=100, min=0)
 
 
 class SceneSettings(bpy.types.PropertyGroup):
+    overrides: CollectionProperty(type=Override)
     use_range: BoolProperty(name="Own range", description="Simulate other frames than the scene's")
     frame_start: IntProperty(name="Start", default=1)
     frame_end: IntProperty(name="End", default=150)
@@ -109,7 +128,7 @@ class SceneSettings(bpy.types.PropertyGroup):
     handover: IntProperty(name="Frame", default=45, description="First frame that is simulated")
     use_return: BoolProperty(name="Return", description="Come back to your animation at a frame")
     return_frame: IntProperty(name="Frame", default=120, description="First frame that your animation alone has again")
-    return_blend: IntProperty(name="Blend", default=15, min=1, description="Frames before that in which the simulated pose dies away")
+    return_blend: IntProperty(name="Blend", default=15, min=1, description="Frames before that in which the simulated pose dies away; fewer than between hand-over and return")
     gets_up: BoolProperty(name="Get up", description="Once it lies still it gets up, if it is a humanoid")
     push_over: BoolProperty(
         name="Push over", default=True, description="One that is limp and would stay upright on its broad feet is pushed forward"
@@ -132,7 +151,7 @@ class SceneSettings(bpy.types.PropertyGroup):
     )
 
 
-CLASSES = (Finding, BoneSettings, ArmatureSettings, BodySettings, HitSettings, SceneSettings)
+CLASSES = (Finding, BoneSettings, ArmatureSettings, Override, BodySettings, HitSettings, SceneSettings)
 POINTERS = (
     (bpy.types.Scene, "sinew", SceneSettings),
     (bpy.types.Object, "sinew", ArmatureSettings),
@@ -152,12 +171,19 @@ class filling:
         _filling[0] = False
 
 
+def _make_overridable(cls):
+    """Marks all values of a group as values that can change on a library override; `overrides` saves them."""
+    for prop in cls.__annotations__.values():
+        insertion = {"USE_INSERTION"} if prop.function is CollectionProperty else set()
+        prop.keywords["override"] = {"LIBRARY_OVERRIDABLE"} | insertion
+
+
 def register():
     for cls in CLASSES:
+        _make_overridable(cls)
         bpy.utils.register_class(cls)
     for owner, name, cls in POINTERS:
-        # Properties on the data can be overridden in linked files.
-        setattr(owner, name, PointerProperty(type=cls, override={"LIBRARY_OVERRIDABLE"}))
+        setattr(owner, name, PointerProperty(type=cls))
     # Separate, since values within a property group of a bone cannot be keyed.
     bpy.types.PoseBone.sinew_mode = EnumProperty(
         items=MODES,

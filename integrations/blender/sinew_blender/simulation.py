@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from . import actions, bridge, keys, stage
+from . import actions, bridge, keys, overlap, stage
 from . import skeleton as sk
 from .skeleton import SinewError
 
@@ -38,6 +38,10 @@ class Job:
     first: int
     last: int
     fps: float
+    # Armatures without a ragdoll and those that they got for this run.
+    built: list
+    # Warnings.
+    notes: list
     share: float = 0.0
     cancelled: bool = False
     baked: object = None
@@ -84,12 +88,16 @@ def preparing(context, arms):
         raise SinewError(f"The hand-over, frame {at}, is outside of the range {first} to {last}")
     if settings.use_return and not max(at, first) < settings.return_frame <= last:
         raise SinewError(f"The return, frame {settings.return_frame}, is not between hand-over and end")
-    loaded, takes, actors, units = [], [], [], []
+    loaded, takes, actors, units, built, notes = [], [], [], [], [], []
     for arm in arms:
         with own_animation(arm):
             take = yield from sk.sampling(arm, sk.skeleton_of(arm), first, last)
         one = bridge.load(arm, take.frames, fps)
-        ragdoll = bridge.ragdoll(arm) if arm.sinew.definition else bridge.build(arm)
+        if arm.sinew.definition:
+            ragdoll = bridge.ragdoll(arm)
+        else:
+            ragdoll = bridge.build(arm)
+            built.append((arm, ragdoll))
         one.unit = ragdoll.unit_scale
         falling = None
         if settings.stiffness > 0:
@@ -97,7 +105,7 @@ def preparing(context, arms):
         character = bridge.asked(
             one.file.character, ragdoll, clip=bridge.CLIP, exact=True, gets_up=settings.gets_up, falling=falling
         )
-        given = {"hits": stage.hits(scene, arm, first, fps), "drives": drives(one, take, fps), "topple": settings.push_over}
+        given = {"hits": stage.hits(scene, arm, json.loads(ragdoll.to_json()), first, fps, notes), "drives": drives(one, take, fps), "topple": settings.push_over}
         if settings.by == "FRAME":
             given["limp_at"] = (at - first) / fps
         if settings.use_return:
@@ -105,6 +113,10 @@ def preparing(context, arms):
             given["return_seconds"] = settings.return_blend / fps
         if not given["hits"] and not given["drives"] and "limp_at" not in given:
             raise SinewError(f"Nothing fells {arm.name}: add a hit, or choose the hand-over by frame")
+        if not given["drives"] and "limp_at" not in given and given["hits"][0][0] * fps > last - first:
+            when = first + round(given["hits"][0][0] * fps)
+            raise SinewError(f"Nothing fells {arm.name}: its first hit, at frame {when}, is after the end, frame {last}")
+        check_return(settings, first, fps, given)
         actors.append(bridge.asked(sinew.Actor, character, pose=character.place_in_file, **given))
         loaded.append(one)
         takes.append(take)
@@ -118,7 +130,23 @@ def preparing(context, arms):
         "wind": stage.wind(scene),
         "gravity": gravity(scene),
     }
-    return Job(arms, loaded, takes, actors, world, first, last, fps)
+    return Job(arms, loaded, takes, actors, world, first, last, fps, built, notes)
+
+
+def check_return(settings, first, fps, given):
+    """Refuses a blend that begins before the character falls: it would move the hand-over to its begin."""
+    starts = [given["limp_at"]] if "limp_at" in given else []
+    starts += [time for time, _, _ in given["hits"]]
+    if not settings.use_return or not starts:
+        return
+    began = first + round(max(min(starts), 0.0) * fps)
+    most = settings.return_frame - began - 1
+    if most < 1:
+        raise SinewError(f"A return at frame {settings.return_frame} leaves no blend after the hand-over at frame {began}: choose at least {began + 2}")
+    if settings.return_blend > most:
+        raise SinewError(
+            f"The blend ({settings.return_blend} frames) begins before the hand-over at frame {began}: choose at most {most}"
+        )
 
 
 def gravity(scene):
@@ -173,10 +201,31 @@ def drives(loaded, take, fps):
     return out
 
 
+def simulated(arm, loaded, take, baked):
+    """Matrix of each bone at each frame. Bones above the first body, which Sinew keeps at rest, follow that body as in the user's animation
+    if they have skin, and otherwise the user's animation itself."""
+    frames, skeleton = bridge.model_matrices(baked, loaded), loaded.skeleton
+    first = next((b["bone"] for b in bodies_of(arm) if b["bone"] in skeleton.parent), None)
+    above, at = [], skeleton.parent.get(first)
+    while at is not None:
+        above.append(at)
+        at = skeleton.parent[at]
+    skinned = sk.skinned(arm, skeleton) if above else set()
+    for frame, own in zip(frames, take.frames):
+        moved = frame[first] @ own[first].inverted() if above else None
+        for name in above:
+            frame[name] = moved @ own[name] if name in skinned else own[name].copy()
+    return frames
+
+
+def bodies_of(arm):
+    return json.loads(arm.sinew.definition)["bodies"] if arm.sinew.definition else []
+
+
 def falls_of(job):
     """The simulated part of each bake, as frames of Blender."""
     found = []
-    for loaded, take, baked in zip(job.loaded, job.takes, job.baked):
+    for arm, loaded, take, baked in zip(job.arms, job.loaded, job.takes, job.baked):
         states = baked.states
         began = next((i for i, state in enumerate(states) if state not in OWN), None)
         if began is None:
@@ -185,10 +234,21 @@ def falls_of(job):
         if bpy.context.scene.sinew.use_return:
             back = bpy.context.scene.sinew.return_frame
             end = min(back - job.first, len(states))
-        frames = bridge.model_matrices(baked, loaded)
+        frames = simulated(arm, loaded, take, baked)
         found.append(
             Fall(job.first + began, frames[began:end], take.worlds[began:end], take.carriers[began:end], back)
         )
+    return found
+
+
+def overlaps(job):
+    """Warnings about characters that are inside of ground or colliders when the bodies take over."""
+    found = []
+    for arm, loaded, take, baked in zip(job.arms, job.loaded, job.takes, job.baked):
+        began = next((i for i, state in enumerate(baked.states) if state not in OWN), None)
+        if began is not None:
+            definition = json.loads(arm.sinew.definition)
+            found += overlap.told(bpy.context.scene, arm, loaded.skeleton, definition, take.frames[began], job.first + began)
     return found
 
 
@@ -210,19 +270,19 @@ def write(job, how):
         else:
             keys.as_action(arm, names, fall)
         arm.sinew.keyed = way
-        arm.sinew.report = json.dumps(report(loaded, take, baked, fall, way))
+        arm.sinew.report = json.dumps(report(arm, loaded, take, baked, fall, way) | {"notes": job.notes})
         done.append(way)
     return done
 
 
-def report(loaded, take, baked, fall, way):
+def report(arm, loaded, take, baked, fall, way):
     """Results for the panel and for tests: lengths in mm of Blender's unit in metres."""
     unit = 1e3 * loaded.unit
     off = 0.0
-    simulated = bridge.model_matrices(baked, loaded)
+    frames = simulated(arm, loaded, take, baked)
     for i in range(fall.first - take.first):
         for n in loaded.skeleton.names:
-            off = max(off, (simulated[i][n].translation - take.frames[i][n].translation).length * unit)
+            off = max(off, (frames[i][n].translation - take.frames[i][n].translation).length * unit)
     return {
         "keyed": way,
         "frames": len(fall.frames),

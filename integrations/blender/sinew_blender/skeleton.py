@@ -258,6 +258,13 @@ def mesh_arrays(arm, skeleton, names):
     return made
 
 
+def unlike(name, names):
+    """A name that none of these is: a mesh may be called like a bone."""
+    while name in names:
+        name += " mesh"
+    return name
+
+
 def _mesh(ob, index, to_sinew_space):
     me = ob.data
     co = np.empty(len(me.vertices) * 3, np.float32)
@@ -265,7 +272,7 @@ def _mesh(ob, index, to_sinew_space):
     me.calc_loop_triangles()
     triangles = np.empty(len(me.loop_triangles) * 3, np.uint32)
     me.loop_triangles.foreach_get("vertices", triangles)
-    made = {"name": ob.name, "triangles": triangles.reshape(-1, 3)}
+    made = {"name": unlike(ob.name, index), "triangles": triangles.reshape(-1, 3)}
     m = to_sinew_space @ ob.matrix_world
     if ob.parent_type == "BONE":
         # Relative to the bone, the vertex is where it is at rest.
@@ -296,6 +303,18 @@ def _weights(ob, index):
         for k, (weight, joint) in enumerate(own[:INFLUENCES]):
             joints[v.index, k], weights[v.index, k] = joint, weight
     return joints, weights
+
+
+def skinned(arm, skeleton):
+    """Names of the bones that move a vertex."""
+    found, index = set(), {n: i for i, n in enumerate(skeleton.names)}
+    for ob in skeleton.meshes:
+        if ob.parent_type == "BONE":
+            found.add(ob.parent_bone)
+            continue
+        joints, weights = _weights(ob, index)
+        found |= {skeleton.names[j] for j in np.unique(joints[weights > 0])}
+    return found
 
 
 def _tubes(arm, skeleton, index):
@@ -342,6 +361,8 @@ def sampling(arm, skeleton, first, last):
     scene = bpy.context.scene
     at, sub = scene.frame_current, scene.frame_subframe
     take, carried = Take(first), carriers(arm, skeleton.names)
+    # Blender copies a mode that Python has set, and that has no keys, only on request.
+    arm.update_tag()
     try:
         for frame in range(first, last + 1):
             scene.frame_set(frame)

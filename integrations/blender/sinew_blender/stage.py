@@ -9,6 +9,8 @@ from .skeleton import TO_Y, SinewError
 
 # Largest number of triangles of one collider.
 MOST_TRIANGLES = 500_000
+# Largest speeds that a hit gives to a whole character and to the struck body, m/s: harder hits can have no effect.
+MOST_SPEED, MOST_BODY_SPEED = 30.0, 1500.0
 # Smallest change of a matrix of a moving object, in Blender's unit.
 MOVES = 1e-6
 
@@ -19,7 +21,7 @@ def colliders(scene, arms):
     return [ob for ob in scene.objects if ob.type == "MESH" and ob.sinew_body.collides and ob not in own]
 
 
-def _triangles(ob, to_local):
+def triangles(ob, to_local):
     """Triangles of the evaluated mesh, Blender's length and Sinew's axes."""
     evaluated = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
     me = evaluated.to_mesh()
@@ -84,20 +86,30 @@ def world(scene, arms, first, last, fps, unit):
     for ob in found:
         friction = ob.sinew_body.friction
         if ob not in moving:
-            vertices, corners = _triangles(ob, TO_Y @ ob.matrix_world)
+            vertices, corners = triangles(ob, TO_Y @ ob.matrix_world)
             made.append(bridge.asked(sinew.Collider.mesh, vertices * unit, corners, friction=friction))
             continue
         # The mesh contains the scale of the first frame; the keys contain position and rotation of each frame.
         track = [sk.to_sinew(m) for m in moving[ob]]
-        vertices, corners = _triangles(ob, sk.to_sinew(moving[ob][0]).inverted() @ TO_Y @ moving[ob][0])
+        vertices, corners = triangles(ob, sk.to_sinew(moving[ob][0]).inverted() @ TO_Y @ moving[ob][0])
         shape = bridge.asked(sinew.Collider.mesh, vertices * unit, corners, friction=friction)
         poses = np.array([bridge.pose7(bridge.scaled(m, unit)) for m in track])
         made.append(shape.keyed(np.arange(len(track)) / fps, poses))
     return made
 
 
-def hits(scene, arm, first, fps):
-    """Hits of empties on this armature: time in seconds, body, impulse in N·s along the empty's arrow (+Z)."""
+def hardest(arm, definition, bone):
+    """The largest impulse on a bone, N·s. A bone without a body belongs to the next one above that has one."""
+    masses = {body["bone"]: body["mass"]["kg"] for body in definition["bodies"]}
+    at, most = arm.data.bones[bone], MOST_SPEED * sum(masses.values())
+    while at is not None and at.name not in masses:
+        at = at.parent
+    return most if at is None else min(most, MOST_BODY_SPEED * masses[at.name])
+
+
+def hits(scene, arm, definition, first, fps, notes):
+    """Hits of empties on this armature: time in seconds, body, impulse in N·s along the empty's arrow (+Z). Says in `notes` which are
+    limited."""
     found = []
     for ob in scene.objects:
         hit = ob.sinew_hit
@@ -110,7 +122,12 @@ def hits(scene, arm, first, fps):
                 continue
             raise SinewError(f"Hit {ob.name}: {arm.name} has no bone {hit.bone}")
         way = (TO_Y @ ob.matrix_world).to_3x3().col[2].normalized()
-        found.append(((hit.frame - first) / fps, hit.bone, tuple(way * hit.impulse)))
+        if way.length == 0:
+            raise SinewError(f"Hit {ob.name} has no direction: it is scaled to 0")
+        most = hardest(arm, definition, hit.bone)
+        if hit.impulse > most:
+            notes.append(f"{ob.name}: {hit.impulse:,.0f} N·s is more than {hit.bone} takes, and was limited to {most:,.0f} N·s")
+        found.append(((hit.frame - first) / fps, hit.bone, tuple(way * min(hit.impulse, most))))
     return sorted(found, key=lambda one: one[0])
 
 

@@ -1,10 +1,13 @@
 """Runs every operator on some rig: `python operators.py`."""
 
+import ctypes
+import importlib.util
 import json
 import os
 import tempfile
 
 import bpy
+import numpy as np
 from mathutils import Matrix
 
 import installed
@@ -42,6 +45,23 @@ def refused(operator, words, **arguments):
     raise AssertionError(f"{operator} is refused, not {done}")
 
 
+def said(operator, **arguments):
+    """What an operator reports: Blender prints it."""
+    flush = ctypes.CDLL(None).fflush
+    with tempfile.TemporaryFile() as file:
+        flush(None)
+        kept = os.dup(1)
+        os.dup2(file.fileno(), 1)
+        try:
+            operator(**arguments)
+        finally:
+            flush(None)
+            os.dup2(kept, 1)
+            os.close(kept)
+        file.seek(0)
+        return file.read().decode()
+
+
 def box(name, at, size):
     bpy.ops.mesh.primitive_cube_add(size=1, location=at)
     made = bpy.context.object
@@ -63,6 +83,54 @@ def hits_of_empties_fell_it_where_they_strike():
     check(chest[60 - FIRST] > chest[50 - FIRST] + 0.05, "it went along the arrow, +Y")
     bpy.data.objects["Hit torso_joint_3"].sinew_hit.bone = "wing"
     refused(bpy.ops.sinew.simulate, "no bone wing")
+
+
+@case
+def a_hit_is_limited_to_what_a_body_takes():
+    arm, names = fresh()
+    masses = {b["bone"]: b["mass"]["kg"] for b in json.loads(arm.sinew.definition)["bodies"]}
+    settings(by="HITS", use_return=False)
+    own = posed(arm, names, 53, 53)[0]
+    hand, chest = "Skeleton_arm_joint_L__2_", "torso_joint_3"
+    for bone, most in ((hand, 1500.0 * masses[hand]), (chest, 30.0 * sum(masses.values()))):
+        bpy.context.scene.frame_set(50)
+        arm.data.bones.active = arm.data.bones[bone]
+        bpy.ops.sinew.add_hit(impulse=20000)
+        check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+        notes = report(arm)["notes"]
+        check(len(notes) == 1 and f"Hit {bone}: 20,000 N·s" in notes[0] and f"{most:,.0f} N·s" in notes[0], f"{notes}")
+        moved = posed(arm, names, 53, 53)[0][names[0]].translation.y - own[names[0]].translation.y
+        check(moved > 0.5, f"it is thrown along the arrow: {moved}")
+        bpy.data.objects.remove(bpy.data.objects[f"Hit {bone}"])
+
+
+@case
+def an_overlap_at_the_hand_over_is_told():
+    arm, _ = fresh()
+    settings(by="FRAME", handover=45, use_return=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["notes"] == [], f"{report(arm)['notes']}")
+    settings(ground_height=0.19)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated in the ground")
+    notes = report(arm)["notes"]
+    check(len(notes) == 1 and "Armature is 0.22 m" in notes[0] and "inside the ground" in notes[0], f"{notes}")
+    settings(ground_height=0.0)
+    crate = box("crate", (0, 0, 0), (4, 4, 0.38))
+    beside = box("beside", (0, 3, 0), (1, 1, 4))
+    crate.sinew_body.collides = beside.sinew_body.collides = True
+    rigs.activate(arm)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated in the crate")
+    notes = report(arm)["notes"]
+    check(len(notes) == 1 and "inside crate: move it" in notes[0], f"{notes}")
+
+
+@case
+def a_run_without_a_build_keeps_its_ragdoll():
+    for run in (bpy.ops.sinew.preview, bpy.ops.sinew.simulate):
+        rigs.empty_scene()
+        arm = rigs.cesium_man()
+        settings(by="FRAME", handover=45, use_return=False)
+        check(run() == {"FINISHED"} and arm.sinew.definition, "it has a ragdoll")
+        check(bpy.ops.sinew.doctor() == {"FINISHED"}, "which the doctor examines")
 
 
 @case
@@ -125,6 +193,27 @@ def nla_tracks_stay_below_a_strip():
 
 
 @case
+def clearing_a_strip_makes_the_action_active_again():
+    arm, names = fresh()
+    own, data = posed(arm, names), arm.animation_data
+    if data.action is None:
+        strip = data.nla_tracks[0].strips[0]
+        action, slot = strip.action, getattr(strip, "action_slot", None)
+        data.nla_tracks.remove(data.nla_tracks[0])
+        data.action = action
+        if slot is not None:
+            data.action_slot = slot
+        own = posed(arm, names)
+    action, tracks = data.action, len(data.nla_tracks)
+    settings(by="FRAME", handover=40, keys="STRIP", use_return=False)
+    for _ in range(2):
+        check(bpy.ops.sinew.simulate() == {"FINISHED"} and data.action is None, "the strip is over a track of the Action")
+    check(bpy.ops.sinew.clear() == {"FINISHED"}, "it is cleared")
+    check(data.action == action and len(data.nla_tracks) == tracks, f"{data.action}, {len(data.nla_tracks)} tracks")
+    check(max(off(a, b, names) for a, b in zip(posed(arm, names), own)) == 0.0, "it moves as before")
+
+
+@case
 def a_bone_can_be_limp_or_powered_over_time():
     arm, names = fresh()
     hand, elbow = "Skeleton_arm_joint_L__2_", "Skeleton_arm_joint_L__3_"
@@ -145,6 +234,18 @@ def a_bone_can_be_limp_or_powered_over_time():
 
 
 @case
+def a_mode_without_keys_is_taken():
+    arm, names = fresh()
+    own = posed(arm, names)
+    for joint in ("Skeleton_arm_joint_L__4_", "Skeleton_arm_joint_L__3_", "Skeleton_arm_joint_L__2_"):
+        arm.pose.bones[joint].sinew_mode = "LIMP"
+    settings(by="FRAME", handover=140, use_return=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    away = off(posed(arm, names, 100, 100)[0], own[100 - FIRST], ["Skeleton_arm_joint_L__2_"])
+    check(away > 0.05, f"the arm hangs: {away}")
+
+
+@case
 def values_of_a_bone_go_into_the_definition():
     arm, _ = fresh()
     bone = next(b for b in arm.pose.bones if b.sinew.has_swing)
@@ -159,6 +260,9 @@ def values_of_a_bone_go_into_the_definition():
     check(pick(now)["shape"] != pick(was)["shape"], "size")
     check(abs(bone.sinew.size - 1.2) < 1e-3, "which the panel shows")
     check(bpy.ops.sinew.simulate() == {"FINISHED"}, "and it falls with them")
+    bone.sinew.swing_y = (0.4, -0.3)
+    now = json.loads(arm.sinew.definition)
+    check([round(x, 1) for x in pick(now)["joint"]["limits_deg"]["swing_y"]] == [-17.2, 22.9], "inverted limits are sorted")
 
 
 @case
@@ -174,6 +278,34 @@ def the_doctor_selects_and_mends():
     check(bone.name in chosen, f"it is among {chosen}")
     check(bpy.ops.sinew.cure() == {"FINISHED"}, "and mended")
     check(bone.sinew.mass < 100, f"it weighs {bone.sinew.mass} kg")
+
+
+@case
+def a_build_tells_what_it_resets_and_a_fix_what_it_changes():
+    arm, _ = fresh()
+    for name in ("torso_joint_3", "leg_joint_L_1"):
+        arm.pose.bones[name].sinew.mass = 90.0
+    words = said(bpy.ops.sinew.cure)
+    check("mass ratio: Skeleton_neck_joint_1, torso_joint_3" in words and "mended (limits not mirrored, " in words, words)
+    bpy.ops.sinew.build()
+    check("edits of" not in said(bpy.ops.sinew.build), "nothing was edited")
+    arm.pose.bones["torso_joint_3"].sinew.mass = 9.0
+    words = said(bpy.ops.sinew.build)
+    check("edits of 1 bone were reset" in words and "17 bodies" in words, words)
+
+
+@case
+def the_doctor_speaks_of_the_panel():
+    rigs.empty_scene()
+    arm = rigs.cesium_man()
+    arm.scale = (20, 20, 20)
+    bpy.context.view_layer.update()
+    bpy.ops.sinew.build()
+    fixes = {f.code: f.fix for f in arm.sinew.findings}
+    check("Set Height" in fixes["unit-inferred"] and "--" not in "".join(fixes.values()), f"{fixes}")
+    arm.sinew.height = 1.8
+    bpy.ops.sinew.build()
+    check("unit-inferred" not in {f.code for f in arm.sinew.findings}, "a height was given")
 
 
 @case
@@ -205,6 +337,71 @@ def a_cancelled_simulation_leaves_nothing():
     check(not job.thread.is_alive() and job.baked is None, "it ends")
     check(isinstance(job.error, addon().bridge.engine().Cancelled), f"as cancelled, not {job.error}")
     check(counts() == before, "and leaves nothing")
+
+
+def skin_of(arm):
+    """Vertices of the evaluated skin in the world."""
+    ob = next(ob for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == arm)
+    evaluated = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    me = evaluated.to_mesh()
+    points = np.empty(len(me.vertices) * 3, np.float32)
+    me.vertices.foreach_get("co", points)
+    evaluated.to_mesh_clear()
+    m = np.array(ob.matrix_world)
+    return points.reshape(-1, 3) @ m[:3, :3].T + m[:3, 3]
+
+
+@case
+def a_preview_shows_the_fall_and_changes_nothing():
+    arm, names = fresh()
+    before, own = counts(), posed(arm, names)
+    settings(by="FRAME", handover=45)
+    check(bpy.ops.sinew.preview() == {"FINISHED"}, "it is previewed")
+    check(counts() == before and arm.sinew.report == "", "nothing is added")
+    check(max(off(a, b, names) for a, b in zip(posed(arm, names), own)) == 0.0, "and nothing moves")
+    ghost, frames = addon().preview.of(arm), (10, 44, 60, 100, LAST)
+    drawn = {f: ghost.vertices(f).copy() for f in frames}
+    colors = ghost.colors(60)
+    check(colors.shape == (len(drawn[60]), 4) and 0 < colors.min() and colors.max() <= 1, "it is shaded")
+    check(ghost.stamp == addon().preview.stamp(bpy.context.scene, arm), "it is up to date")
+    settings(stiffness=0.1)
+    check(ghost.stamp != addon().preview.stamp(bpy.context.scene, arm), "another setting makes it out of date")
+    settings(stiffness=0.0)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    check(addon().preview.of(arm) is None, "the keys take its place")
+    for f in frames:
+        bpy.context.scene.frame_set(f)
+        apart = np.abs(skin_of(arm) - drawn[f]).max()
+        check(apart < 1e-3, f"at {f} the keyed skin is {1e3 * apart:.2f} mm from the preview")
+    bpy.ops.sinew.preview()
+    check(bpy.ops.sinew.end_preview() == {"FINISHED"} and addon().preview.of(arm) is None, "it ends")
+
+
+@case
+def limits_have_handles_where_they_are_drawn():
+    for make in (rigs.cesium_man, rigs.scale_100):
+        arm, _ = fresh(make)
+        handles, overlay = addon().handles, addon().overlay
+        bone = next(b for b in arm.pose.bones if b.sinew.has_swing and b.sinew.has_twist)
+        arm.data.bones.active = arm.data.bones[bone.name]
+        check(handles.limits_of(bone) == ["swing_y", "swing_z", "twist"], "it has all limits")
+        frame, reach = handles.frame_of(arm, bone.name)
+        drawn = overlay.lines_of(arm, {bone.name})
+        for key, lines in (("swing_y", overlay.LIMIT), ("swing_z", overlay.LIMIT), ("twist", overlay.TWIST)):
+            for end in (0, 1):
+                angle = getattr(bone.sinew, key)[end]
+                offset = handles.offset_of(key, angle, reach)
+                flat = lambda place: place.xz  # noqa: E731
+                found = handles.angle_on_screen(key, frame, reach, frame @ offset, angle + 0.2, flat)
+                check((flat(frame @ handles.offset_of(key, found, reach)) - flat(frame @ offset)).length < 0.02 * reach, "it is found on the screen")
+                nearest = min((p - frame @ offset).length for p in drawn[lines])
+                check(nearest < 0.02 * reach, f"{key}: the handle is {nearest / reach:.3f} cones from its line")
+        handles.drag(bone, "swing_y", 1, 0.3)
+        handles.drag(bone, "swing_z", 0, 0.4)
+        handles.drag(bone, "twist", 1, 0.2)
+        limits = next(b for b in json.loads(arm.sinew.definition)["bodies"] if b["bone"] == bone.name)["joint"]["limits_deg"]
+        got = [limits["swing_y"][1], limits["swing_z"][0], limits["twist"][1]]
+        check([round(x, 2) for x in got] == [17.19, 0.0, 11.46], f"the definition has {got}")
 
 
 @case
@@ -254,11 +451,95 @@ def fk_controls_of_rigify_take_the_fall():
 def files_are_written():
     arm, _ = fresh()
     with tempfile.TemporaryDirectory() as folder:
-        for kind, end in (("SINEW", ".sinew.json"), ("MJCF", ".xml"), ("GLB", ".glb")):
+        settings(by="FRAME", handover=45)
+        for kind, end in (("SINEW", ".sinew.json"), ("MJCF", ".xml"), ("GLB", ".glb"), ("USD", ".usda")):
             path = os.path.join(folder, "it" + end)
             check(bpy.ops.sinew.export(filepath=path, format=kind) == {"FINISHED"}, kind)
             check(os.path.getsize(path) > 1000, f"{path} is written")
+        path = os.path.join(folder, "it.usdc")
+        if importlib.util.find_spec("pxr") is None:
+            refused(bpy.ops.sinew.export, "needs pxr", filepath=path, format="USD")
+        else:
+            check(bpy.ops.sinew.export(filepath=path, format="USD") == {"FINISHED"}, "USD")
         refused(bpy.ops.sinew.export, "No such file", filepath=os.path.join(folder, "no", "it"), format="SINEW")
+
+
+@case
+def names_of_mixamo_and_auto_rig_pro_are_recognised():
+    parts = {"hips", "spine", "upperChest", "neck", "head"} | {s + p for s in ("left", "right") for p in ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")}
+    for wanted in (rigs.MIXAMO, rigs.AUTO_RIG_PRO):
+        arm, names = fresh(lambda wanted=wanted: rigs.metarig(wanted))
+        by_role = {b["role"]: b["bone"] for b in json.loads(arm.sinew.definition)["bodies"]}
+        check(parts <= set(by_role), f"roles {sorted(parts - set(by_role))} are missing")
+        left = wanted["shin"].format(long="Left", short="l")
+        check(by_role["leftLowerLeg"] == left, f"the left shin is {by_role['leftLowerLeg']}")
+        own = posed(arm, names, LAST, LAST)[0]
+        settings(by="FRAME", handover=45, keys="AUTO", use_return=False)
+        check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+        check(report(arm)["verdict"] == "good" and report(arm)["before_handover_mm"] < 1.0, f"{report(arm)}")
+        head = wanted["spine.006"]
+        check(own[head].translation.z - posed(arm, names, LAST, LAST)[0][head].translation.z > 0.8, "and it falls")
+
+
+@case
+def meshes_may_be_called_like_bones():
+    arm, names = fresh(rigs.knight)
+    own = posed(arm, names)
+    skins = [ob for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == arm]
+    check(len(skins) > 3, "it has several meshes")
+    for ob, name in zip(skins, ("head", "chest", "upperarm.l", "hips")):
+        check(name in arm.data.bones, f"{name} is a bone")
+        ob.name = name
+    settings(by="FRAME", handover=45, use_return=False)
+    check(bpy.ops.sinew.build() == {"FINISHED"} and bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    check(report(arm)["before_handover_mm"] < 1.0, f"{report(arm)['before_handover_mm']} mm before the hand-over")
+    keyed = posed(arm, names)
+    jump = max((keyed[44][n].translation - keyed[43][n].translation).length for n in names)
+    check(jump < 0.05, f"a bone jumps by {jump} m at the hand-over, {max((own[44][n].translation - own[43][n].translation).length for n in names)} m in the user's own")
+
+
+@case
+def bones_above_the_hips_stay_with_the_animation():
+    arm, names = fresh(rigs.robot)
+    own = posed(arm, names)
+    settings(by="FRAME", handover=45, use_return=True, return_frame=120, return_blend=20)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    check(report(arm)["before_handover_mm"] < 1.0 and report(arm)["verdict"] == "good", f"{report(arm)}")
+    keyed = posed(arm, names)
+    check(max(off(keyed[f], own[f], ["Bone", "Body"]) for f in range(LAST - FIRST + 1)) < 1e-3, "they have no skin, and do not follow the fall")
+    check(off(keyed[70], own[70], ["Hips"]) > 0.3, "the hips fall")
+    for f in (44, 119):
+        jump = max(((keyed[f][n].translation - keyed[f - 1][n].translation) - (own[f][n].translation - own[f - 1][n].translation)).length for n in names)
+        check(jump < 0.03, f"a bone jumps by {jump} m at {f + 1}")
+
+
+@case
+def shape_keys_and_loose_parts_do_not_change_the_body():
+    arm, names = fresh()
+    before = json.loads(arm.sinew.definition)
+    skin = next(ob for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == arm)
+    skin.shape_key_add(name="Basis")
+    smile = skin.shape_key_add(name="Smile")
+    for point in smile.data[:200]:
+        point.co.x += 0.3
+    smile.value = 1.0
+    check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built with shape keys")
+    check(json.loads(arm.sinew.definition)["bodies"] == before["bodies"], "with the same bodies")
+    settings(by="FRAME", handover=45, use_return=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["verdict"] == "good", "and falls")
+    check(smile.value == 1.0, "the shape stays")
+
+
+@case
+def a_blend_begins_after_the_hand_over():
+    arm, _ = fresh()
+    settings(by="FRAME", handover=20, use_return=True)
+    for back, blend, words in ((50, 100, "choose at most 29"), (25, 15, "choose at most 4"), (21, 15, "choose at least 22")):
+        settings(return_frame=back, return_blend=blend)
+        refused(bpy.ops.sinew.simulate, words)
+    settings(return_frame=50, return_blend=29)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "the largest blend is simulated")
+    check(report(arm)["handover"] == 20, f"it falls at {report(arm)['handover']}")
 
 
 @case
@@ -269,6 +550,19 @@ def what_cannot_be_is_one_line():
     bpy.ops.sinew.build()
     settings(by="HITS")
     refused(bpy.ops.sinew.simulate, "Nothing fells")
+    arm.data.bones.active = arm.data.bones["torso_joint_3"]
+    bpy.ops.sinew.add_hit()
+    hit = bpy.data.objects["Hit torso_joint_3"]
+    hit.sinew_hit.frame = LAST + 50
+    refused(bpy.ops.sinew.simulate, "is after the end, frame 150")
+    hit.sinew_hit.frame, hit.scale = 50, (0, 0, 0)
+    bpy.context.view_layer.update()
+    refused(bpy.ops.sinew.simulate, "has no direction")
+    bpy.data.objects.remove(hit)
+    refused(bpy.ops.sinew.export, "Give the file a name", format="SINEW")
+    bpy.context.view_layer.objects.active = None
+    refused(bpy.ops.sinew.build, "Select an armature or one of its meshes")
+    rigs.activate(arm)
     settings(by="FRAME", handover=500)
     refused(bpy.ops.sinew.simulate, "outside of the range")
     settings(handover=45)
@@ -286,6 +580,39 @@ def what_cannot_be_is_one_line():
         bpy.context.scene.collection.objects.link(linked)
         rigs.activate(linked)
         refused(bpy.ops.sinew.build, "library override")
+
+
+@case
+def a_library_override_falls():
+    rigs.empty_scene()
+    arm = rigs.cesium_man()
+    with tempfile.TemporaryDirectory() as folder:
+        path, name = os.path.join(folder, "linked.blend"), arm.name
+        skin = next(ob.name for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == arm)
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        rigs.empty_scene()
+        with bpy.data.libraries.load(path, link=True) as (_, into):
+            into.objects = [name, skin]
+        scene = bpy.context.scene
+        for ob in into.objects:
+            scene.collection.objects.link(ob)
+        made = bpy.data.objects[name].override_hierarchy_create(scene, bpy.context.view_layer)
+        arm = made if made.type == "ARMATURE" else next(ob for ob in bpy.data.objects if ob.type == "ARMATURE" and ob.override_library)
+        rigs.activate(arm)
+        settings(by="FRAME", handover=45, use_return=False)
+        check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built")
+        check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["verdict"] == "good", "and falls")
+        check(report(arm)["before_handover_mm"] < 1.0, f"{report(arm)}")
+        bodies = len(json.loads(arm.sinew.definition)["bodies"])
+        copy = os.path.join(folder, "overriding.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=copy)
+        bpy.ops.wm.open_mainfile(filepath=copy)
+        arm = next(ob for ob in bpy.data.objects if ob.type == "ARMATURE" and ob.override_library)
+        check(len(json.loads(arm.sinew.definition)["bodies"]) == bodies, "the ragdoll is in the saved file")
+        rigs.activate(arm)
+        check(arm.animation_data.action == arm.sinew.made_action is not None, "with its keys")
+        check(bpy.ops.sinew.clear() == {"FINISHED"} and arm.animation_data.action != arm.sinew.made_action, "and is cleared")
+        rigs.empty_scene()
 
 
 @case

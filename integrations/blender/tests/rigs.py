@@ -56,6 +56,16 @@ def fox():
     return imported(os.path.join(DATA, "rigs/Fox.glb"), "Walk")
 
 
+def robot():
+    """Meshes called like bones, and a bone above the hips."""
+    return imported(os.path.join(DATA, "rigs/quaternius_Robot.glb"), "Robot_Walking")
+
+
+def gunner():
+    """As `robot`, with skin on that bone."""
+    return imported(os.path.join(DATA, "rigs/quaternius_cyberpunk_Character.glb"), "Walk")
+
+
 def scale_100():
     """The man scaled by a hundred through the armature's parent, rotated and moved, without applying the transforms."""
     arm = cesium_man()
@@ -120,4 +130,66 @@ def boxes(rig):
     ob.parent = rig
 
 
-RIGS = {"cesium_man": cesium_man, "knight": knight, "rigify_human": rigify_human, "fox": fox, "scale_100": scale_100}
+# Names of Blender's metarig, and those of other rigs. A side is L or R.
+MIXAMO = {
+    "spine": "mixamorig:Hips",
+    "spine.001": "mixamorig:Spine",
+    "spine.002": "mixamorig:Spine1",
+    "spine.003": "mixamorig:Spine2",
+    "spine.004": "mixamorig:Neck",
+    "spine.006": "mixamorig:Head",
+    "shoulder": "mixamorig:{long}Shoulder",
+    "upper_arm": "mixamorig:{long}Arm",
+    "forearm": "mixamorig:{long}ForeArm",
+    "hand": "mixamorig:{long}Hand",
+    "thigh": "mixamorig:{long}UpLeg",
+    "shin": "mixamorig:{long}Leg",
+    "foot": "mixamorig:{long}Foot",
+    "toe": "mixamorig:{long}ToeBase",
+}
+AUTO_RIG_PRO = {
+    "spine": "root.x",
+    "spine.001": "spine_01.x",
+    "spine.002": "spine_02.x",
+    "spine.003": "spine_03.x",
+    "spine.004": "neck.x",
+    "spine.006": "head.x",
+    "shoulder": "shoulder.{short}",
+    "upper_arm": "arm_stretch.{short}",
+    "forearm": "forearm_stretch.{short}",
+    "hand": "hand.{short}",
+    "thigh": "thigh_stretch.{short}",
+    "shin": "leg_stretch.{short}",
+    "foot": "foot.{short}",
+    "toe": "toes_01.{short}",
+}
+
+
+def metarig(names):
+    """Blender's basic metarig with the names of another rig, a skin of boxes and a nod of the spine; other bones do not deform."""
+    addon_utils.enable("rigify", default_set=True)
+    bpy.ops.object.armature_basic_human_metarig_add()
+    rig = bpy.context.object
+    for bone in rig.data.bones:
+        stem, _, side = bone.name.rpartition(".")
+        stem, side = (stem, side) if side in {"L", "R"} else (bone.name, "")
+        wanted = names.get(stem)
+        bone.use_deform = wanted is not None
+        if wanted is not None:
+            bone.name = wanted.format(long={"L": "Left", "R": "Right"}.get(side), short=side.lower())
+    boxes(rig)
+    for frame, angle in ((FIRST, 0.0), (30, 0.3), (60, 0.0)):
+        bone = rig.pose.bones[names["spine.002"]]
+        bone.rotation_mode, bone.rotation_euler = "XYZ", (angle, 0, 0)
+        bone.keyframe_insert("rotation_euler", frame=frame)
+    return activate(rig)
+
+
+RIGS = {
+    "cesium_man": cesium_man,
+    "knight": knight,
+    "rigify_human": rigify_human,
+    "fox": fox,
+    "scale_100": scale_100,
+    "gunner": gunner,
+}

@@ -1,8 +1,9 @@
-//! Charts of the landing page: time of the mean step against the largest gap of a joint, an SVG for each scene.
+//! Charts of the landing page: time of the mean step against the largest gap of a joint, an SVG for each scene. Scenes that were measured at
+//! several efforts show each as a dot, joined by a line for each engine.
 
 use super::figures::{self, GAP, came_apart, rounded};
-use super::page::{of, title};
-use super::results::{Results, SceneResult};
+use super::page::title;
+use super::results::{EngineResult, Results, SceneResult};
 use anyhow::{Context, Result, ensure};
 use std::fmt::Write;
 
@@ -28,6 +29,8 @@ const LEAST_GAP: f64 = 1e-3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dot {
     engine: &'static str,
+    /// Sinew's quality or a peer's number of substeps; empty for an engine measured at its default alone.
+    effort: String,
     color: &'static str,
     /// Largest gap of a joint after any step, millimetres.
     gap: f64,
@@ -36,14 +39,38 @@ pub struct Dot {
     came_apart: bool,
 }
 
-/// Returns the dots of a scene's engines.
+impl Dot {
+    /// Returns the engine, and the effort if there are several.
+    fn name(&self) -> String {
+        let Self { engine, effort, .. } = self;
+        if effort.is_empty() { (*engine).to_owned() } else { format!("{engine}, {effort}") }
+    }
+}
+
+/// Returns the results of a scene at several efforts, or at the defaults if those were not measured.
+fn scene<'a>(results: &'a Results, name: &str) -> Option<&'a SceneResult> {
+    results.efforts.iter().find(|scene| scene.name == name).or_else(|| results.scene(name))
+}
+
+/// Returns the dots of a scene, each engine's in the order of its efforts.
 fn dots(scene: &SceneResult) -> Vec<Dot> {
-    let dot = |(name, color): &(&'static str, &'static str)| {
-        let engine = of(scene, name)?;
-        let (time, gap) = (engine.times()?.mean, 1e3 * (GAP.of)(engine)?);
-        Some(Dot { engine: title(name), color, gap, time, came_apart: came_apart(engine) })
+    let of_engine = |&(engine, color): &(&'static str, &'static str)| {
+        let dot = move |result: &EngineResult| {
+            let (name, effort) = result.name.split_once(' ').unwrap_or((&result.name, ""));
+            let (time, gap) = (result.times()?.mean, 1e3 * (GAP.of)(result)?);
+            let came_apart = came_apart(result);
+            (name == engine).then(|| Dot {
+                engine: title(engine),
+                effort: effort.to_owned(),
+                color,
+                gap,
+                time,
+                came_apart,
+            })
+        };
+        scene.engines.iter().filter_map(dot)
     };
-    ENGINES.iter().filter_map(dot).collect()
+    ENGINES.iter().flat_map(of_engine).collect()
 }
 
 /// Returns the range in whole powers of ten that contains values.
@@ -65,7 +92,7 @@ fn place(value: f64, [low, high]: [f64; 2], [from, to]: [f64; 2]) -> f64 {
 pub fn charts(results: &Results) -> Result<String> {
     let mut html = String::new();
     for name in SCENES {
-        let scene = results.scene(name).with_context(|| format!("{name} was not measured"))?;
+        let scene = scene(results, name).with_context(|| format!("{name} was not measured"))?;
         let dots = dots(scene);
         ensure!(dots.len() > 1 && dots[0].engine == "Sinew", "{name} has no peers to compare with");
         html += &figure(scene, &dots);
@@ -77,7 +104,7 @@ fn figure(scene: &SceneResult, dots: &[Dot]) -> String {
     let cells = |dot: &Dot| {
         let mark = if dot.came_apart { " †" } else { "" };
         let (time, gap) = (rounded(dot.time), figures::Unit::Length.show(1e-3 * dot.gap));
-        format!("<tr><th scope=\"row\">{}</th><td>{time} ms</td><td>{gap}{mark}</td></tr>", dot.engine)
+        format!("<tr><th scope=\"row\">{}</th><td>{time} ms</td><td>{gap}{mark}</td></tr>", dot.name())
     };
     let rows: String = dots.iter().map(cells).collect();
     let note = if dots.iter().any(|dot| dot.came_apart) { "<p>† the joints came apart.</p>" } else { "" };
@@ -99,7 +126,7 @@ fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
     let (xs, ys) = ([left, width - right], [height - below, above]);
     let legend: Vec<String> = dots
         .iter()
-        .map(|dot| format!("{} {} ms and {} mm", dot.engine, rounded(dot.time), rounded(dot.gap)))
+        .map(|dot| format!("{} {} ms and {} mm", dot.name(), rounded(dot.time), rounded(dot.gap)))
         .collect();
     let mut out = format!(
         "<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}: {}\">\n",
@@ -107,9 +134,18 @@ fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
         legend.join("; ")
     );
     axes(&mut out, (across, xs), (up, ys));
+    let at = |dot: &Dot| [place(dot.gap.max(LEAST_GAP), across, xs), place(dot.time, up, ys)];
+    for pair in dots.windows(2).filter(|pair| pair[0].engine == pair[1].engine) {
+        let ([x, y], [x2, y2]) = (at(&pair[0]), at(&pair[1]));
+        _ = writeln!(
+            out,
+            "<path d=\"M{x:.1} {y:.1}L{x2:.1} {y2:.1}\" stroke=\"{}\" stroke-width=\"2\"/>",
+            pair[0].color
+        );
+    }
     let mut labels: Vec<[f64; 2]> = Vec::new();
-    for dot in dots {
-        let [x, y] = [place(dot.gap.max(LEAST_GAP), across, xs), place(dot.time, up, ys)];
+    for (i, dot) in dots.iter().enumerate() {
+        let [x, y] = at(dot);
         let radius = if dot.engine == "Sinew" { 8.0 } else { 6.0 };
         _ = writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{}\"/>", dot.color);
         // A name that would overlap another moves down.
@@ -125,7 +161,7 @@ fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
             "<text x=\"{:.1}\" y=\"{at:.1}\" fill=\"{}\" text-anchor=\"{anchor}\">{}</text>",
             x + shift,
             dot.color,
-            dot.engine
+            if i > 0 && dots[i - 1].engine == dot.engine { dot.effort.clone() } else { dot.name() }
         );
     }
     out + "</svg>"
@@ -187,12 +223,20 @@ mod tests {
         let results = super::super::kept();
         charts(&results).expect("all scenes were measured");
         for name in SCENES {
-            let scene = results.scene(name).expect("it was measured");
-            let row = page.lines().find(|line| line.starts_with(&format!("| {name} "))).expect("a row");
-            for dot in dots(scene) {
-                assert!(row.contains(&format!(" {} · ", rounded(dot.time))), "{dot:?}: {row}");
+            let dots = dots(scene(&results, name).expect("it was measured"));
+            let rows: Vec<&str> =
+                page.lines().filter(|line| line.starts_with(&format!("| {name} "))).collect();
+            for dot in &dots {
+                let time = rounded(dot.time);
+                let is_row = |row: &&&str| match dot.effort.as_str() {
+                    "" => row.contains(&format!(" {time} · ")),
+                    effort => [dot.engine, effort, &time]
+                        .iter()
+                        .all(|cell| row.split('|').any(|c| c.trim() == *cell)),
+                };
+                assert!(rows.iter().any(|row| is_row(&row)), "{dot:?}: {rows:?}");
             }
-            assert_eq!(dots(scene).len(), ENGINES.len(), "{name}");
+            assert!(dots.len() >= ENGINES.len(), "{name}");
         }
     }
 

@@ -1,6 +1,6 @@
 //! Writes `docs/benchmarks.md`: what each engine achieves in its time.
 
-use super::figures::{Figure, came_apart, headline, rounded, telling};
+use super::figures::{DEPTH, DEPTH_P99, Figure, GAP, LIMITS, came_apart, headline, rounded, telling};
 use super::machine::Machine;
 use super::requirements::{Bar, HOLDS, Hold, SPEEDS, STANDS, Verdict};
 use super::results::{EngineResult, Results, SceneResult};
@@ -19,6 +19,9 @@ pub fn page(results: &Results, missing: &[&str]) -> String {
     };
     add("At a glance", &format!("{GLANCE}\n{}\n{LEGEND}{}", glance(results), gaps(missing)));
     add("Joints and stacks", &format!("{HOLD}\n{}", holds(results, HOLDS.iter().chain(STANDS))));
+    if !results.efforts.is_empty() {
+        add("Time against quality", &format!("{EFFORTS}\n{}", efforts(results)));
+    }
     add("Characters that blend clips", &format!("{ANIMATION}\n{}", animation(results)));
     add("Ragdolls beside MuJoCo", &format!("{RAGDOLLS}\n{}", ragdolls(results)));
     add("Against the specification", &format!("{SPECIFICATION}\n{}", speeds(results)));
@@ -76,6 +79,11 @@ mean step over Sinew's, above 1 is faster · *p99*: the same for the 99th percen
 const HOLD: &str =
     "Requirements with default settings, Sinew's figure, and the best peer's. Peaks are over all steps.
 **Bold** where Sinew meets the requirement.
+";
+
+const EFFORTS: &str =
+    "Heaps of ragdolls at several efforts of each engine: Sinew's `Quality`, Rapier's solver iterations, Box3D's substeps, Jolt's collision
+steps. Milliseconds, then quality over the whole run; *limits* counts those exceeded by more than 0.1 rad.
 ";
 
 const ANIMATION: &str = "1,000 characters sample two clips, blend them and compute the pose in model space, each at its own times, in a step of
@@ -187,6 +195,23 @@ fn factor(speed: Option<f64>) -> String {
 /// Returns the reason why there is no result.
 fn absence(engine: &EngineResult) -> String {
     if engine.is_failed() { engine.missing_reason().unwrap_or(NONE).to_owned() } else { NONE.to_owned() }
+}
+
+/// Returns one line per scene, engine and effort: times and metrics of quality.
+pub fn efforts(results: &Results) -> Table {
+    let figures = [&GAP, &LIMITS, &DEPTH, &DEPTH_P99];
+    let headings = ["scene", "engine", "effort", "mean", "p99"].into_iter();
+    let mut table = Table::new(3, headings.chain(["gap", "limits", "depth", "depth p99 at the end"]));
+    for (scene, engine) in
+        results.efforts.iter().flat_map(|scene| scene.engines.iter().map(move |e| (scene, e)))
+    {
+        let (name, effort) = engine.name.split_once(' ').unwrap_or((&engine.name, NONE));
+        let Some(times) = engine.times() else { continue };
+        let cells = [scene.name.clone(), title(name).to_owned(), effort.to_owned()];
+        let times = [times.mean, times.p99].map(rounded);
+        table.row(cells.into_iter().chain(times).chain(figures.map(|figure| cell(figure, engine))));
+    }
+    table
 }
 
 /// Returns the table of requirements, with Sinew's metric and the best peer's.
@@ -307,6 +332,18 @@ mod tests {
             row[1..8],
             ["chain_swing_1000", "gap", "100", "2.00 · 0.100 mm", "1.00 · 11.0 m †", "–", "0.500×"]
         );
+    }
+
+    #[test]
+    fn efforts_are_rows_by_engine() {
+        let quality = json!({ "joint_gap_peak_m": 0.001, "penetration_run_max_m": 0.05 });
+        let engines = vec![engine("sinew fast", &[2.0], &quality), engine("box3d 16", &[4.0], &quality)];
+        let results = Results { efforts: vec![scene("ragdoll_pile", engines)], ..Results::default() };
+        let table = efforts(&results).to_string();
+        let rows: Vec<Vec<&str>> =
+            table.lines().skip(2).map(|line| line.split('|').map(str::trim).collect()).collect();
+        assert_eq!(rows[0][1..7], ["ragdoll_pile", "Sinew", "fast", "2.00", "4.00", "1.00 mm"]);
+        assert_eq!(rows[1][2..5], ["Box3D", "16", "4.00"]);
     }
 
     #[test]

@@ -210,6 +210,29 @@ pub fn scenes(engine: &Engine) -> Result<Vec<Scene>> {
     scenes.iter().map(|value| scene(value).context("a scene without a name")).collect()
 }
 
+/// Work per step at which each engine is measured: Sinew's qualities, the peers' numbers of substeps.
+const EFFORTS: &[(&str, &[&str])] = &[
+    ("sinew", &["fast", "balanced", "exact"]),
+    ("rapier", &["4", "8", "16"]),
+    ("box3d", &["4", "8", "16", "64"]),
+    ("jolt", &["1", "4", "16"]),
+];
+
+/// Returns each engine of [`EFFORTS`] once per effort, named by both.
+pub fn at_efforts(engines: &[Engine]) -> Vec<Engine> {
+    let efforts = |engine: &Engine| EFFORTS.iter().find(|(name, _)| *name == engine.name);
+    let each = |engine| {
+        efforts(engine).into_iter().flat_map(|(_, efforts)| *efforts).map(move |effort| (engine, effort))
+    };
+    let at = |(engine, effort): (&Engine, &&str)| {
+        let mut engine = engine.clone();
+        engine.name = format!("{} {effort}", engine.name);
+        engine.arguments.extend(["--effort", effort].map(str::to_owned));
+        engine
+    };
+    engines.iter().flat_map(each).map(at).collect()
+}
+
 impl Engine {
     /// Returns true if the engine runs this kind of scene.
     pub fn is_for(&self, scene: &Scene) -> bool {

@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 pub struct Results {
     /// Scenes in the order of the peers' list.
     pub scenes: Vec<SceneResult>,
+    /// Scenes on each engine at several efforts, which an engine's name contains.
+    pub efforts: Vec<SceneResult>,
     /// Simulated seconds per processor second of a bake on one thread, if measured.
     pub bake: Option<f64>,
     /// Number of conversions of a rig of 6,000 vertices to a ragdoll in 100 ms, if measured with the bake.
@@ -70,6 +72,7 @@ impl Results {
     pub fn has(&self, name: &str) -> bool {
         self.scene(name).is_some()
             || name == super::BAKE && self.bake.is_some()
+            || name == super::EFFORT && !self.efforts.is_empty()
             || name == super::LIMP && !self.limp.is_empty()
             || name == super::THREADS && !self.threads.is_empty()
     }
@@ -80,6 +83,9 @@ impl Results {
         self.bake = self.bake.or(older.bake);
         self.build = self.build.or(older.build);
         self.machine = self.machine.take().or(older.machine);
+        if self.efforts.is_empty() {
+            self.efforts = older.efforts;
+        }
         for (newer, older) in [(&mut self.threads, older.threads), (&mut self.limp, older.limp)] {
             older.into_iter().for_each(|(name, factor)| {
                 newer.entry(name).or_insert(factor);
@@ -104,7 +110,8 @@ impl Results {
                 "engines": Value::Object(scene.engines.iter().map(engine).collect()),
             })
         };
-        let scenes: Vec<Value> = self.scenes.iter().map(scene).collect();
+        let [scenes, efforts] =
+            [&self.scenes, &self.efforts].map(|scenes| scenes.iter().map(scene).collect::<Vec<Value>>());
         json!({
             "sinew": "benchmarks",
             "version": 1,
@@ -114,15 +121,17 @@ impl Results {
             "two_threads": self.threads,
             "machine": self.machine,
             "scenes": scenes,
+            "efforts": efforts,
         })
     }
 
     /// Reads results; unreadable entries count as not measured.
     pub fn from_json(value: &Value) -> Self {
-        let scenes = value["scenes"].as_array().into_iter().flatten();
+        let scenes = |key: &str| value[key].as_array().into_iter().flatten().filter_map(scene).collect();
         let factors = |key: &str| value[key].as_object().into_iter().flatten().filter_map(factor).collect();
         Self {
-            scenes: scenes.filter_map(scene).collect(),
+            scenes: scenes("scenes"),
+            efforts: scenes("efforts"),
             bake: value["bake_realtime_factor"].as_f64(),
             build: value["builds_in_100_ms"].as_f64(),
             limp: factors("limp_realtime_factor"),
@@ -310,6 +319,7 @@ pub mod tests {
         let of = |name: &str, time| scene(name, vec![engine("sinew", &[time], &Value::Null)]);
         let mut results = Results {
             scenes: vec![of("c", 1.0), of("gone", 1.0), of("a", 1.0)],
+            efforts: vec![of("a", 3.0)],
             bake: Some(5.0),
             machine: Some("a machine".to_owned()),
             limp: BTreeMap::from([("median".to_owned(), 3.0)]),
@@ -320,6 +330,7 @@ pub mod tests {
         results.update(newer, &["a", "b", "c"]);
         assert_eq!(results.scenes, [of("a", 2.0), of("b", 2.0), of("c", 1.0)]);
         assert_eq!((results.bake, results.limp["median"], results.threads["a"]), (Some(5.0), 3.0, 1.5));
+        assert_eq!(results.efforts, [of("a", 3.0)]);
         assert_eq!(Results::from_json(&results.to_json()), results);
     }
 }

@@ -4,7 +4,7 @@
 //! of 100 links; another commit on a Zen 4 took 0.59, 0.94 and 1.44.
 
 use crate::engine::{
-    BodyState, Description, Engine, OverlapTester, RayCaster, Simulation, Unsupported, circular_cone,
+    BodyState, Description, Effort, Engine, OverlapTester, RayCaster, Simulation, Unsupported, circular_cone,
     joint_frames,
 };
 use crate::ffi::box3d::{Body, BoxPair, Joint, Motion, Shape, Surface, World, version};
@@ -48,7 +48,12 @@ impl Engine for Box3d {
         }
     }
 
-    fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported> {
+    fn build_at(&self, scene: &Blueprint, effort: Effort) -> Result<Box<dyn Simulation>, Unsupported> {
+        let substeps = match effort {
+            Effort::Default => SUBSTEPS,
+            Effort::Substeps(substeps) => substeps as i32,
+            Effort::Quality(_) => return Err(Unsupported::new("an effort as a quality: use substeps")),
+        };
         let mut world = World::new(scene.gravity);
         refuse_rolling_on_boxes(scene)?;
         for def in &scene.bodies {
@@ -59,7 +64,7 @@ impl Engine for Box3d {
             world.add_joint([def.a, def.b], frames, joint(def)?);
         }
         scene.apart.iter().for_each(|&(a, b)| world.part([a, b]));
-        Ok(Box::new(Box3dWorld { world, bodies: scene.bodies.len() }))
+        Ok(Box::new(Box3dWorld { world, bodies: scene.bodies.len(), substeps }))
     }
 
     fn build_rays(&self, scene: &RayScene) -> Result<Box<dyn RayCaster>, Unsupported> {
@@ -202,11 +207,12 @@ fn joint(def: &BlueprintJoint) -> Result<Joint, Unsupported> {
 struct Box3dWorld {
     world: World,
     bodies: usize,
+    substeps: i32,
 }
 
 impl Simulation for Box3dWorld {
     fn step(&mut self) {
-        self.world.step(DT, SUBSTEPS);
+        self.world.step(DT, self.substeps);
     }
 
     fn states(&self, out: &mut Vec<BodyState>) {

@@ -1,8 +1,8 @@
 //! Rapier with its defaults.
 
 use crate::engine::{
-    BodyState, ClothSimulation, Description, Engine, OverlapTester, ParticleState, RayCaster, Simulation,
-    Unsupported, circular_cone, joint_frames,
+    BodyState, ClothSimulation, Description, Effort, Engine, OverlapTester, ParticleState, RayCaster,
+    Simulation, Unsupported, circular_cone, joint_frames,
 };
 use crate::parry::{from_pose, from_vector, pose, shape, vector};
 use crate::scenes::{BoxPairs, ClothScene, DT, PlacedBox, RayScene};
@@ -38,8 +38,15 @@ impl Engine for Rapier {
         }
     }
 
-    fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported> {
+    fn build_at(&self, scene: &Blueprint, effort: Effort) -> Result<Box<dyn Simulation>, Unsupported> {
         let mut world = world(scene.gravity);
+        match effort {
+            Effort::Default => {}
+            Effort::Substeps(substeps) => {
+                world.integration_parameters.num_solver_iterations = substeps as usize;
+            }
+            Effort::Quality(_) => return Err(Unsupported::new("an effort as a quality: use substeps")),
+        }
         let mut bodies = Vec::with_capacity(scene.bodies.len());
         for def in &scene.bodies {
             let handle = world.insert_body(body(def, scene.sleeping));

@@ -1,8 +1,8 @@
 //! Sinew from this repository.
 
 use crate::engine::{
-    BodyState, CharacterPose, ClothSimulation, Crowd, Description, Engine, OverlapTester, ParticleState,
-    RayCaster, Simulation, Unsupported,
+    BodyState, CharacterPose, ClothSimulation, Crowd, Description, Effort, Engine, OverlapTester,
+    ParticleState, RayCaster, Simulation, Unsupported,
 };
 use crate::scenes::{BoxPair, BoxPairs, ClothScene, Field, PlacedBox, RayScene};
 use core::ops::Range;
@@ -36,8 +36,13 @@ impl Engine for Sinew {
         &[Field::Physics, Field::Figures, Field::Animation]
     }
 
-    fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported> {
-        let (world, bodies, _) = scene.build();
+    fn build_at(&self, scene: &Blueprint, effort: Effort) -> Result<Box<dyn Simulation>, Unsupported> {
+        let (mut world, bodies, _) = scene.build();
+        match effort {
+            Effort::Default => {}
+            Effort::Quality(quality) => world.set_world_quality(quality),
+            Effort::Substeps(_) => return Err(Unsupported::new("an effort in substeps: use a quality")),
+        }
         Ok(Box::new(SinewWorld { world, bodies }))
     }
 

@@ -1,6 +1,6 @@
 //! The scenes have their documented sizes, and reports have all keys.
 
-use sinew_peers::engine::Engine;
+use sinew_peers::engine::{Effort, Engine};
 use sinew_peers::engines;
 use sinew_peers::mjcf::mjcf;
 use sinew_peers::run::{Judging, Start, run};
@@ -43,7 +43,7 @@ fn every_engine_has_our_ragdolls() {
         let Some(engine) = entry.engine.filter(|engine| engine.fields().contains(&crowd.field)) else {
             continue;
         };
-        let report = run(engine, crowd, Start::Perturbed(1), Some(1), Judging::Off);
+        let report = run(engine, crowd, Start::Perturbed(1), Some(1), (Judging::Off, Effort::Default));
         assert!(report["cpu_ms"]["median"].is_number(), "{report}");
     }
 }
@@ -87,7 +87,7 @@ fn the_cloth_is_a_square_of_four_metres() {
 #[test]
 fn unsupported_scenes_are_reported() {
     let cloth = scenes::find("cloth").expect("a scene");
-    let report = run(sinew(), cloth, Start::Own, Some(1), Judging::Off);
+    let report = run(sinew(), cloth, Start::Own, Some(1), (Judging::Off, Effort::Default));
     assert_eq!(report["scene"], "cloth");
     assert!(report["unsupported"].as_str().is_some_and(|why| !why.is_empty()));
     assert!(report.get("cpu_ms").is_none());
@@ -96,7 +96,7 @@ fn unsupported_scenes_are_reported() {
 #[test]
 fn report_has_all_keys() {
     let chain = scenes::find("chain_hang_100").expect("a scene");
-    let report = run(sinew(), chain, Start::Own, Some(12), Judging::On);
+    let report = run(sinew(), chain, Start::Own, Some(12), (Judging::On, Effort::Default));
     assert_eq!((&report["engine"], &report["steps"]), (&"sinew".into(), &12.into()));
     assert_eq!((&report["bodies"], &report["joints"]), (&12.into(), &11.into()));
     for key in ["median", "p99", "mean", "last_third", "best"] {
@@ -107,6 +107,6 @@ fn report_has_all_keys() {
     }
     assert!(report["quality"]["joint_gap_peak_m"].as_f64().is_some_and(|gap| gap < 1e-3));
     assert!(report["quality"]["stretch_end"].is_number());
-    let without = run(sinew(), chain, Start::Own, Some(2), Judging::Off);
+    let without = run(sinew(), chain, Start::Own, Some(2), (Judging::Off, Effort::Default));
     assert!(without.get("quality").is_none());
 }

@@ -4,7 +4,9 @@ from typing import Any, Callable, Literal, Mapping, Sequence, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .types import BuildReport, ClipArrays, Contacts, DoctorReport, DropReport, Events, FallQuality, MeshArrays, RayHits
+from typing_extensions import Unpack
+
+from .types import BuildReport, CharacterSettings, ClipArrays, Contacts, DoctorReport, DropReport, Events, FallQuality, MeshArrays, RayHits
 
 __all__ = [
     "__version__",
@@ -19,6 +21,10 @@ __all__ = [
     "Bake",
     "Collider",
     "Drive",
+    "Field",
+    "Particles",
+    "LiveParticles",
+    "Mover",
     "LiveCharacter",
     "World",
     "BatchWorlds",
@@ -40,6 +46,7 @@ _Shape = Literal["box", "sphere", "capsule", "cylinder", "cone", "half_space"]
 _Quality = Literal["fast", "balanced", "exact"]
 _Hit = tuple[float, str, ArrayLike]
 _World = _Path | Sequence["Collider"]
+_Fade = Literal["none", "linear", "smooth", "square"]
 
 class SinewError(Exception):
     """A call that failed within Sinew."""
@@ -105,10 +112,15 @@ def bake(
     fps: float = 30.0,
     world: _World | None = None,
     wind: ArrayLike | None = None,
+    fields: Sequence[Field] | None = None,
     gravity: ArrayLike | None = None,
+    dt: float = ...,
+    substeps: int = 4,
+    quality: _Quality = "balanced",
+    key_error: tuple[float, float] | None = None,
     progress: Callable[[float], bool | None] | None = None,
 ) -> list[Bake]:
-    """Simulates several characters in one world, where they meet each other. `world` is the name of a file or a list of colliders, by default a floor; `wind` and `gravity` are m/s and m/s². `progress` is called with the share that is done; if it returns False the bake ends with `Cancelled`."""
+    """Simulates several characters in one world, where they meet each other. `world` is the name of a file or a list of colliders, by default a floor; `wind` and `gravity` are m/s and m/s². Keys that are not needed for an error of `key_error` (metres, radians; 0.1 mm and 0.01°) are left out. `progress` is called with the share that is done; if it returns False the bake ends with `Cancelled`."""
 
 def mannequin() -> CharacterFile:
     """The built-in mannequin, 1.75 m, with a walk and two ways to get up."""
@@ -299,6 +311,20 @@ class Character:
     def raised(self) -> float:
         """Height by which the played clip is raised onto its floor, metres; 0 for an exact one."""
 
+    @property
+    def clips(self) -> list[str]:
+        """Names of the clips that it knows: the file's, and Sinew's get-ups."""
+
+    def scaled(self, factor: float) -> Character:
+        """A copy of another size: a child, a giant."""
+
+    @property
+    def swept_radius(self) -> float:
+        """Radius of a mover that keeps all bodies on its side of a wall while the clip plays, metres."""
+
+    def edited(self, **settings: Unpack[CharacterSettings]) -> Character:
+        """A copy with other settings of falls, hits, getting up and motions: `sinew.types.CharacterSettings` lists them."""
+
     def bake(
         self,
         *,
@@ -311,9 +337,15 @@ class Character:
         return_at: float | None = None,
         return_seconds: float = 0.5,
         topple: bool | None = None,
+        topple_velocity: ArrayLike | None = None,
         world: _World | None = None,
         wind: ArrayLike | None = None,
+        fields: Sequence[Field] | None = None,
         gravity: ArrayLike | None = None,
+        dt: float = ...,
+        substeps: int = 4,
+        quality: _Quality = "balanced",
+        key_error: tuple[float, float] | None = None,
         pose: ArrayLike | None = None,
         phase: float = 0.0,
         name: str = "sinew",
@@ -341,11 +373,12 @@ class Actor:
         return_at: float | None = None,
         return_seconds: float = 0.5,
         topple: bool | None = None,
+        topple_velocity: ArrayLike | None = None,
         pose: ArrayLike | None = None,
         phase: float = 0.0,
         name: str = "sinew",
     ) -> Actor:
-        """A hit is a time in seconds, a body by role or joint, and an impulse in N·s; with `flinch` weak ones only let it flinch. `drives` change what moves its bones over time. At `return_at` seconds its clip alone has the pose again; the simulated pose dies away in `return_seconds` before. With `topple` a single character that goes limp and stays upright is pushed over; by default where nothing else is done to it."""
+        """A hit is a time in seconds, a body by role or joint, and an impulse in N·s; with `flinch` weak ones only let it flinch. `drives` change what moves its bones over time. At `return_at` seconds its clip alone has the pose again; the simulated pose dies away in `return_seconds` before. With `topple` a single character that goes limp and stays upright is pushed over; by default where nothing else is done to it. `topple_velocity`: the velocity, m/s (3,), that its highest point gets at `limp_at` seconds."""
 
 @final
 class Drive:
@@ -387,6 +420,166 @@ class Drive:
     @property
     def half_life(self) -> float:
         """Seconds in which half of the change is made."""
+
+@final
+class Field:
+    """Wind, water, gravity or drag that acts on all bodies, movers and particles."""
+
+    @staticmethod
+    def wind(
+        velocity: ArrayLike,
+        *,
+        density: float = 1.225,
+        drag: float = 1.0,
+        lift: float = 0.0,
+        gust_speed: float = 0.0,
+        gust_length: float = 3.0,
+        gust_time: float = 1.0,
+        seed: int = 0,
+    ) -> Field:
+        """Moving air, m/s (3,), with gusts of a speed (m/s), a length (m) and a time (s)."""
+
+    @staticmethod
+    def water(
+        height: float = 0.0,
+        *,
+        density: float = 1000.0,
+        flow: ArrayLike | None = None,
+        damping: float = 1.0,
+        drag: float = 0.5,
+    ) -> Field:
+        """Water below a height, metres, with a `flow` in m/s (3,)."""
+
+    @staticmethod
+    def gravity(acceleration: ArrayLike) -> Field:
+        """An acceleration added to the world's gravity, m/s² (3,)."""
+
+    @staticmethod
+    def attraction(center: ArrayLike, strength: float, *, softening: float = 0.0) -> Field:
+        """Attraction to a point with a strength G·M, m³/s²; a negative one repels."""
+
+    @staticmethod
+    def mutual_gravity(constant: float = ..., *, softening: float = 0.0) -> Field:
+        """Attraction of all bodies by each other; the constant is in m³/(kg s²)."""
+
+    @staticmethod
+    def drag(
+        *, linear: float = 0.0, quadratic: float = 0.0, angular: float = 0.0, flow: ArrayLike | None = None
+    ) -> Field:
+        """Drag: N·s/m, N·s²/m², N·m·s, in a medium with a `flow` in m/s (3,)."""
+
+    def inside(
+        self,
+        kind: _Shape,
+        size: Sequence[float],
+        *,
+        pose: ArrayLike | None = None,
+        margin: float = 0.0,
+        fade: _Fade = "none",
+    ) -> Field:
+        """A copy that acts only inside a shape at a pose (7,), with full strength from `margin` metres below its surface on."""
+
+@final
+class Particles:
+    """Definition of a rope, cloth or a soft ball, for `World.add_particles`."""
+
+    @staticmethod
+    def rope(
+        start: ArrayLike,
+        end: ArrayLike,
+        *,
+        links: int | None = None,
+        mass: float | None = None,
+        radius: float | None = None,
+        stiffness: float | None = None,
+    ) -> Particles:
+        """A rope between two points (3,), metres: kg, metres, N/m; by default 10 mm nylon."""
+
+    @staticmethod
+    def cloth(
+        corner: ArrayLike,
+        across: ArrayLike,
+        down: ArrayLike,
+        *,
+        columns: int | None = None,
+        rows: int | None = None,
+        mass: float | None = None,
+        hang: bool = False,
+    ) -> Particles:
+        """A rectangle of cloth from a corner along two edges (3,), metres; with `hang` its first row is held by the world."""
+
+    @staticmethod
+    def soft_ball(center: ArrayLike, radius: float, *, mass: float | None = None) -> Particles:
+        """An elastic skin filled with air."""
+
+    def attached(self, particle: int, body: int | None = None) -> Particles:
+        """A copy in which a particle is held where it is, by a body or, without one, by the world; -1 is the last particle."""
+
+    def __len__(self) -> int:
+        """Number of particles."""
+
+@final
+class LiveParticles:
+    """Particles in a world."""
+
+    @property
+    def positions(self) -> _Floats:
+        """Position of each particle, metres: (n, 3)."""
+
+    @property
+    def velocities(self) -> _Floats:
+        """Velocity of each particle, m/s: (n, 3)."""
+
+    @property
+    def triangles(self) -> NDArray[np.uint32]:
+        """Triangles of the surface: (t, 3); none for a rope."""
+
+    def push(self, particle: int, impulse: ArrayLike) -> None:
+        """Applies an impulse to a particle, N·s (3,)."""
+
+    def set_position(self, particle: int, position: ArrayLike) -> None:
+        """Moves a particle, metres (3,)."""
+
+    def remove(self) -> None:
+        """Removes them from the world."""
+
+@final
+class Mover:
+    """Upright capsule in a world that walks, climbs steps and jumps."""
+
+    @property
+    def position(self) -> _Floats:
+        """Its lowest point, metres: (3,)."""
+
+    @property
+    def velocity(self) -> _Floats:
+        """Its velocity, m/s: (3,)."""
+
+    @property
+    def grounded(self) -> bool:
+        """True if it stands on the ground."""
+
+    @property
+    def ground(self) -> int | None:
+        """Id of the body that it stands on; None in the air and on another mover."""
+
+    def walk(self, velocity: ArrayLike) -> None:
+        """Sets its walking velocity relative to the ground, m/s (3,)."""
+
+    def jump(self, speed: float = 3.5) -> None:
+        """Makes it jump in the next step with an upward speed, m/s, if it is on the ground."""
+
+    def launch(self, velocity: ArrayLike) -> None:
+        """Throws it with a velocity, m/s (3,)."""
+
+    def teleport(self, position: ArrayLike) -> None:
+        """Teleports its lowest point, metres (3,)."""
+
+    def set_height(self, height: float) -> bool:
+        """Changes its height, metres; False if there is no space to grow."""
+
+    def remove(self) -> None:
+        """Removes it from the world."""
 
 @final
 class Collider:
@@ -483,6 +676,26 @@ class Bake:
         """Reasons for a verdict that is not `good`."""
 
     @property
+    def steps(self) -> int:
+        """Number of simulated steps."""
+
+    @property
+    def bodies(self) -> int:
+        """Number of bodies of the ragdoll."""
+
+    @property
+    def keys(self) -> tuple[int, int]:
+        """Number of keys before and after unneeded ones were left out."""
+
+    @property
+    def key_error(self) -> tuple[float, float]:
+        """Largest error of the clip's keys against the frames: metres, radians."""
+
+    @property
+    def world_from_model(self) -> _Floats:
+        """Matrix from the file's space to the world: (3, 4)."""
+
+    @property
     def hash(self) -> int:
         """Hash of the state at the end: equal on every machine."""
 
@@ -544,6 +757,9 @@ class World:
     ) -> LiveCharacter:
         """Adds a character, standing at a pose (7,), `phase` seconds into its clip; it follows every step."""
 
+    def add_field(self, field: Field) -> int:
+        """Adds a field and returns its id."""
+
     def add_wind(
         self,
         velocity: ArrayLike,
@@ -556,7 +772,33 @@ class World:
         """Adds wind, m/s, with gusts of a speed (m/s), a length (m) and a time (s), and returns its id."""
 
     def remove_field(self, field: int) -> None:
-        """Removes a wind."""
+        """Removes a field."""
+
+    def explode(
+        self,
+        center: ArrayLike,
+        radius: float,
+        impulse: float,
+        *,
+        fade: _Fade = "linear",
+        sheltered: bool = False,
+    ) -> None:
+        """Explodes at a point (3,): everything within a radius, metres, gets an impulse per area, N·s/m² at the centre; with `sheltered` not behind static bodies."""
+
+    def add_particles(self, particles: Particles) -> LiveParticles:
+        """Adds a rope, cloth or a soft ball."""
+
+    def add_mover(
+        self,
+        position: ArrayLike,
+        *,
+        radius: float = 0.3,
+        height: float = 1.8,
+        mass: float = 80.0,
+        push_force: float = 800.0,
+        step_height: float = 0.35,
+    ) -> Mover:
+        """Adds a mover with its lowest point at a position (3,); metres, kg, N."""
 
     def remove_body(self, body: int) -> None:
         """Removes a body with its joints."""
@@ -677,6 +919,43 @@ class LiveCharacter:
     def positions(self) -> _Floats:
         """Position of each joint in the world, metres: (joints, 3)."""
 
+    def pose_without_springs(self) -> tuple[_Floats, _Floats]:
+        """Local translations (joints, 3) and rotations (joints, 4) without the motion of springs."""
+
+    def interpolated(self, alpha: float) -> tuple[_Floats, _Floats, _Floats]:
+        """The pose `alpha` between the last step and this: of the character (7,), local translations (joints, 3) and rotations (joints, 4)."""
+
+    @property
+    def world_from_model(self) -> _Floats:
+        """Matrix from the file's space to the world: (3, 4)."""
+
+    @property
+    def stumbles(self) -> bool:
+        """True if it is powered and takes steps to catch a push."""
+
+    @property
+    def level_of_detail(self) -> str:
+        """`full`, `hit_bodies`, `keyed` or `frozen`."""
+
+    @property
+    def gets_up(self) -> bool:
+        """True if it gets up once it lies still."""
+
+    def set_gets_up(self, gets_up: bool) -> None:
+        """Sets whether it gets up once it lies still."""
+
+    @property
+    def mover(self) -> Mover | None:
+        """Its mover; None while it has none."""
+
+    @property
+    def garments(self) -> list[LiveParticles]:
+        """Particles of its garments."""
+
+    @property
+    def lost_joints(self) -> list[str]:
+        """Joints of detached limbs."""
+
     def skin_matrices(self, skin: int = 0, *, alpha: float = 1.0) -> _Floats:
         """Matrices from a mesh's bind pose to the world for each joint of a skin, `alpha` between the last step and this: (joints of the skin, 3, 4)."""
 
@@ -696,6 +975,9 @@ class LiveCharacter:
     def hit(self, bone: str, impulse: ArrayLike) -> float:
         """Hits a body, by role or joint, with an impulse in N·s (3,); returns its work, J."""
 
+    def hit_at(self, body: int, point: ArrayLike, impulse: ArrayLike) -> float | None:
+        """Hits one of its bodies, by id, at a point of the world (3,), with an impulse in N·s (3,); returns its work, J, or None if the body is not its own."""
+
     def go_limp(self) -> None:
         """Makes it limp."""
 
@@ -714,10 +996,10 @@ class LiveCharacter:
     def clear(self) -> bool:
         """Moves a limp character out of static shapes that it is deep in; False if it is in none."""
 
-    def hold(self, bone: str, body: int, *, pose: ArrayLike | None = None, drops: bool = False) -> int:
+    def hold(self, bone: str, body: int, *, pose: ArrayLike | None = None, drops: bool = False, max_force: float = ..., max_torque: float = ...) -> int:
         """Makes a bone hold a dynamic body; `pose` (7,) is the body's pose in the bone's frame. Returns the joint's id."""
 
-    def grab(self, bone: str, body: int, *, max_force: float = 1300.0, reach: float = 0.25) -> int | None:
+    def grab(self, bone: str, body: int, *, max_force: float = 1300.0, reach: float = 0.25, slip: float = 0.4, speed: float = 1.0, to: ArrayLike | None = None, drops: bool = True) -> int | None:
         """Makes a bone grab a body within reach (m), also one of another character, with a force in N. Returns the joint's id, or None."""
 
     def release(self, body: int) -> bool:

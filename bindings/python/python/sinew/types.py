@@ -1,9 +1,12 @@
 """Types of returned dicts."""
 
-from typing import TypedDict
+from typing import TYPE_CHECKING, Literal, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from ._sinew import Drive
 
 _Floats = NDArray[np.float32]
 _Ids = NDArray[np.uint64]
@@ -24,6 +27,47 @@ class FallQuality(TypedDict):
     settled_s: float | None
     up_s: float | None
     nan: int
+
+
+class CharacterSettings(TypedDict, total=False):
+    """Settings of `Character.edited`; what is left out stays."""
+
+    # Falls.
+    gets_up: bool  # gets up once it lies still
+    rolls_over: bool  # rolls over to the start of the nearest get-up
+    keeps_out_of_floor: bool  # the skin stays out of the floor in transitions
+    falling: "Drive"  # drives the bodies during a fall
+    patience: float  # seconds after which it gets up although it moves
+    max_speed: float  # largest speed that an animation hands over, m/s
+    max_turn_speed: float  # rad/s
+    friction: float
+    rolling: float  # rolling resistance, metres
+    restitution: float
+    angular_damping: float  # 1/s
+    quality: Literal["fast", "balanced", "exact"] | None  # None: the world's
+    # The world, while clips move it.
+    hit_bodies: bool  # its bodies are in the world
+    yields: tuple[float, float]  # largest force, N, and momentum, N·s, with which these push
+    mover: bool  # a mover stops and carries it
+    step_height: float  # metres
+    slope_limit: float  # radians
+    turn_speed: float  # rad/s
+    jump_speed: float  # m/s
+    air_time: float  # seconds without ground after which it falls
+    landing_speed: float  # m/s from which a landing makes it fall
+    plants_feet: bool  # feet stay on the ground under them
+    toughness: float | None  # N·s from which a hit makes it fall; None: every hit
+    most_steps: int  # to catch a push while powered
+    feels: float  # smallest impulse that counts as a hit, N·s
+    tells_contacts: bool  # `events` contain contacts
+    # Motions, by the names of clips.
+    clip: str | None  # loops until it falls
+    idle: str | None  # loops at rest, if `set_move` moves it
+    faster: list[str]  # loop at higher speeds
+    get_ups: list[str]
+    clip_events: list[tuple[str, float, str]]  # clip, seconds, name
+    locomotion: Literal["in_place", "by_clip", "exact"] | float  # m/s of a clip that walks on the spot
+    opening: Literal["clip", "rest"]
 
 
 class BuildReport(TypedDict):

@@ -7,8 +7,8 @@ use crate::event::ClipEvent;
 use crate::legs::Legs;
 use crate::rig::{LocalTransform, Rig};
 use crate::roles::{RigAnalysis, Side};
-use crate::tuning::{LAST_FRAMES, LOOP_SEAM, STEP_FRAME_TIME, STEP_SLIDE};
-use sinew_math::{Vec3, min};
+use crate::tuning::{LAST_FRAMES, LOOP_SEAM, ONE_WAY, STEP_FRAME_TIME, STEP_SLIDE};
+use sinew_math::{Vec3, max, min};
 
 /// Footsteps of a clip, and the speed of its walk on the spot.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -62,7 +62,10 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     let (_, feet) = flatten_soles(&feet, &sole_points(rig, &root, &feet, &take));
     let points = sole_points(rig, &root, &feet, &take);
     let mut settings = ContactSettings::for_leg(feet[0].length);
-    let ground = Ground::under(&take, &points, &settings);
+    let mut ground = Ground::under(&take, &points, &settings);
+    if repeats && ground.velocity == Vec3::ZERO {
+        ground.velocity = strides_on_the_spot(&take, &points, &settings).unwrap_or(Vec3::ZERO);
+    }
     if ground.velocity.length() > settings.run {
         // The feet of a runner touch the ground half as long as those of a walker.
         settings.shortest *= 0.5;
@@ -82,6 +85,29 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     let mut events: Vec<ClipEvent> = found.into_iter().filter_map(footfall).collect();
     events.sort_by(|a, b| a.time.total_cmp(&b.time));
     Ok(Footsteps { events, speed: ground.velocity.length() })
+}
+
+/// Velocity of the ground under a looped walk on the spot whose feet move back at changing speeds, as drawn walks do, m/s:
+/// the mean velocity of the lower foot. `None` if that foot does not mostly move one way, or one foot is rarely lower.
+fn strides_on_the_spot(take: &Take, points: &[[[Vec3; 2]; 2]], settings: &ContactSettings) -> Option<Vec3> {
+    let middle = |foot: [Vec3; 2]| (foot[0] + foot[1]) * 0.5;
+    let steps: Vec<(usize, Vec3)> = points
+        .windows(2)
+        .map(|pair| {
+            let foot =
+                usize::from(min(pair[0][1][0].y, pair[0][1][1].y) < min(pair[0][0][0].y, pair[0][0][1].y));
+            let step = middle(pair[1][foot]) - middle(pair[0][foot]);
+            (foot, Vec3::new(step.x, 0.0, step.z))
+        })
+        .collect();
+    let sum = steps.iter().fold(Vec3::ZERO, |sum, (_, step)| sum + *step);
+    let all: f32 = steps.iter().map(|(_, step)| step.length()).sum();
+    let of_right = steps.iter().filter(|(foot, _)| *foot == 1).count();
+    let rarer = usize::min(of_right, steps.len() - of_right);
+    let velocity = sum / max(take.duration() as f32, 1e-6);
+    let is_walk = sum.length() > ONE_WAY * all && 4 * rarer > steps.len();
+    let stays = pace(take, points) < 0.25 * velocity.length();
+    (is_walk && stays && velocity.length() > settings.speed[1]).then_some(velocity)
 }
 
 /// Mean speed of a body over its ground, m/s, from the midpoint between its feet in the first and the last frame.

@@ -15,6 +15,9 @@ const FRAMES: [f32; 2] = [16.0, 96.0];
 /// Words in names of clips in which legs walk.
 const WALKS: [&str; 8] = ["walk", "run", "jog", "trot", "gallop", "sprint", "march", "move"];
 
+/// Words in names of clips in which legs rest.
+const RESTS: [&str; 6] = ["idle", "stand", "wait", "sleep", "sit", "eat"];
+
 /// Poses of a rig in its clips, used to recognise legs by their swing. The default is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gait {
@@ -24,6 +27,8 @@ pub struct Gait {
 /// A clip, evenly sampled.
 #[derive(Clone, Debug, PartialEq)]
 struct Poses {
+    /// True if the clip is a walk by its name, and false if another clip is.
+    is_gait: bool,
     /// Seconds from frame to frame.
     frame_time: f32,
     /// Model transforms of all joints in each frame, file units.
@@ -36,7 +41,8 @@ pub(super) struct Swing {
     /// Half the distance between the two ends along the walking direction, root mean square, file units; 0 if they
     /// swing together or not at all.
     pub reach: f32,
-    /// Longest time between two steps of one limb, seconds; 0 if no clip has a whole stride.
+    /// Longest time between two steps of one limb, seconds; 0 if no clip has a whole stride. Of walks by name, else of
+    /// all clips but those that rest by name: an idle sways slowly.
     pub stride: f32,
     /// Correlation of the ends' height with their forward speed, -1..=1: a walking foot moves forward in the air and
     /// back on the ground.
@@ -70,17 +76,20 @@ impl Gait {
     pub fn of(rig: &Rig, clips: &[Clip]) -> Self {
         let lasts = |clip: &&Clip| clip.duration.is_finite() && clip.duration >= SHORTEST_WALK;
         let mut wanted: Vec<&Clip> = clips.iter().filter(lasts).collect();
-        let walks = |clip: &Clip| {
+        let has = |clip: &Clip, words: &[&str]| {
             let name = clip.name.to_lowercase();
-            WALKS.iter().any(|word| name.contains(word))
+            words.iter().any(|word| name.contains(word))
         };
+        let walks = |clip: &Clip| has(clip, &WALKS);
+        let any_walks = clips.iter().filter(lasts).any(walks);
+        let is_gait = |clip: &Clip| if any_walks { walks(clip) } else { !has(clip, &RESTS) };
         // The sort is stable, so clips of a kind keep their order.
         wanted.sort_by_key(|clip| !walks(clip));
         wanted.truncate(MOST_CLIPS);
         if rig.joints.is_empty() {
             wanted.clear();
         }
-        Self { takes: Arc::new(wanted.into_iter().map(|clip| Poses::of(rig, clip)).collect()) }
+        Self { takes: Arc::new(wanted.into_iter().map(|clip| Poses::of(rig, clip, is_gait(clip))).collect()) }
     }
 
     /// True if there is no clip.
@@ -100,7 +109,9 @@ impl Gait {
                 continue;
             }
             swing.reach = max(swing.reach, reach);
-            swing.stride = max(swing.stride, ways.stride(reach) * take.frame_time);
+            if take.is_gait {
+                swing.stride = max(swing.stride, ways.stride(reach) * take.frame_time);
+            }
             let [a, b, c] = ways.steps();
             (up_and_on, lifts, speeds) = (up_and_on + a, lifts + b, speeds + c);
         }
@@ -112,7 +123,7 @@ impl Gait {
 }
 
 impl Poses {
-    fn of(rig: &Rig, clip: &Clip) -> Self {
+    fn of(rig: &Rig, clip: &Clip, is_gait: bool) -> Self {
         let count = clamp((clip.duration * GAIT_RATE).ceil(), FRAMES[0], FRAMES[1]) as usize;
         let frame_time = clip.duration / count as f32;
         let mut local = vec![LocalTransform::default(); rig.joints.len()];
@@ -123,7 +134,7 @@ impl Poses {
             local_to_model(rig, &local, &Affine::IDENTITY, &mut model);
             model
         };
-        Self { frame_time, frames: (0..count).map(pose).collect() }
+        Self { is_gait, frame_time, frames: (0..count).map(pose).collect() }
     }
 
     /// Returns the paths of a pair; `None` if a pose is not finite.

@@ -35,6 +35,8 @@ pub use hints::Hints;
 pub(crate) use names::words;
 
 pub use role::{HUMANOID_ROLES, Role, Side};
+pub use species::Animal;
+use species::Species;
 
 use crate::rig::{JointIdx, LocalTransform, Rig};
 use anatomy::Anatomy;
@@ -150,6 +152,8 @@ pub struct RigAnalysis {
     pub dropped: Vec<JointIdx>,
     /// Assumed length of a file unit with its reason; `None` if the unit was given.
     pub unit_guess: Option<UnitGuess>,
+    /// Kind of animal that the file names; `None` for humans, machines, and kinds without a usual mass.
+    pub animal: Option<Animal>,
     /// Other assumptions, one sentence each.
     pub notes: Vec<String>,
     /// Hints that were used.
@@ -294,6 +298,10 @@ fn analyze_bound(
     let anatomy = Anatomy::of(rig, &bound, known, hints)?;
     let body = anatomy.measured(&bound, species::named(rig, &hints.name));
     let Anatomy { graph, roles, humanoid, up, left, mut notes, .. } = anatomy;
+    let animal = match body.species {
+        Some(Species::Animal(name, _)) if !humanoid => Animal::of(name, body.size),
+        _ => None,
+    };
     let stance = Stance::new(&bound, up);
     let (unit_scale, unit_guess) = units::unit_scale(&body, hints);
     let named = axes::name;
@@ -333,6 +341,7 @@ fn analyze_bound(
         bind_model: bound.model,
         dropped,
         unit_guess: Some(unit_guess),
+        animal,
         notes,
         hints: hints.clone(),
     })

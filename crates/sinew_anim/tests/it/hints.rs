@@ -1,6 +1,7 @@
 //! Tests of hints: clips, exporters, neighbouring files and doors show what skin and names do not.
 
 use crate::toy;
+use sinew_anim::contact::footsteps;
 use sinew_anim::{
     Channel, Clip, Hints, Interpolation, Joint, LocalTransform, Property, Rig, RigAnalysis, Role, Side,
     analyze, analyze_hinted,
@@ -185,6 +186,10 @@ fn ambiguous_unit_is_decided_by_head_size_and_stride() {
     assert!(scale == 0.01 && note.contains("a stride of 0.50 s is that of legs of"), "{note}");
     let (scale, note) = unit(&rig, &Hints::of_clips(&rig, &[walk(1.1, 1.0)]));
     assert!(scale == 0.0254 && note.contains("a stride of 1.10 s"), "{note}");
+    // An idle that sways slowly is no stride.
+    let named = |name: &str, seconds: f32| Clip { name: name.into(), ..walk(seconds, 1.0) };
+    let (scale, note) = unit(&rig, &Hints::of_clips(&rig, &[named("Idle", 1.1), named("Walk", 0.5)]));
+    assert!(scale == 0.01 && note.contains("a stride of 0.50 s"), "{note}");
 }
 
 #[test]
@@ -243,4 +248,28 @@ fn named_animal_gets_the_size_of_its_species() {
         assert!(unit == 0.0 || found == unit, "{name}: {}", guess.note);
         assert!(unit > 0.0 || guess.note.contains("since a grown wolf is 1.02 to 2.55 m"), "{}", guess.note);
     }
+}
+
+/// Feet of drawn walks move back at changing speeds; such walks used to have no speed.
+#[test]
+fn walk_with_uneven_feet_has_a_speed() {
+    let rig = tall(1.75, 1.0);
+    let found = analyze_hinted(&rig, &Hints::default()).expect("a skin");
+    let clip = |sway: f32| {
+        let mut channels = Vec::new();
+        for (side, phase) in [("left", 0.0), ("right", 0.5 * TAU)] {
+            let thigh = joint(&format!("{side}UpperLeg"));
+            channels.push(turns(thigh, 1.0, move |t| {
+                let s = trig::sin(t + phase);
+                -sway * s * s * s
+            }));
+            let shank = joint(&format!("{side}LowerLeg"));
+            channels.push(turns(shank, 1.0, move |t| 0.9 * sinew_math::max(trig::cos(t + phase), 0.0)));
+        }
+        Clip { name: String::new(), duration: 1.0, channels }
+    };
+    let speed = |clip: &Clip| footsteps(&rig, &found, clip).expect("it has legs").speed;
+    let walk = speed(&clip(0.5));
+    assert!((0.4..2.5).contains(&walk), "{walk} m/s");
+    assert_eq!(speed(&clip(0.0)), 0.0);
 }

@@ -89,7 +89,7 @@ impl RagdollBuild {
         let (built, seconds) = timed(|| self.build());
         let (character, settings, def, build) = built?;
         let mut tested = drop_test(&def);
-        let doubt = settings.doubt(&def);
+        let doubt = settings.doubt(&character, &def);
         let Judgement { verdict, reasons, skin } =
             with_default_life(&character, &def, doubt.as_ref(), |life| {
                 judge_life(&character, &tested, life, doubt.as_ref())

@@ -90,7 +90,7 @@ impl CharacterFile {
         Ok(file)
     }
 
-    /// Returns the rig without the skin of garments, which covers no body.
+    /// Returns the rig without the skin of garments and of ignored joints, which covers no body.
     pub fn body(&self) -> Cow<'_, Rig> {
         Correction { ignored: self.worn.clone(), ..Correction::default() }.seen(&self.document.rig)
     }

@@ -5,6 +5,7 @@ use crate::input::kin::units_beside;
 use crate::input::source::{load_motion, name};
 use sinew::anim::retarget::stand;
 use sinew::anim::{Clip, Hints, RigAnalysis, analyze_hinted};
+use sinew::character_hints;
 use sinew::formats::bvh::{BvhOptions, BvhUnit};
 use sinew::formats::{Error, MotionFile, MotionFormat, MotionOptions};
 use std::path::Path;
@@ -42,12 +43,11 @@ impl Motion {
         Ok(motion)
     }
 
-    /// Resolves a doubtful unit by the files next to a glTF, as `bake` does.
+    /// Resolves a doubtful unit by the files next to a character, as `bake` does.
     fn read_neighbours(&mut self, path: &Path) {
         let Some(analysis) = &self.analysis else { return };
         let in_doubt = analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only);
-        let is_gltf = matches!(self.file.format, MotionFormat::Glb | MotionFormat::Gltf);
-        if !(is_gltf && in_doubt && analysis.unit_scale != 1.0 && self.has_skin()) {
+        if !(in_doubt && analysis.unit_scale != 1.0 && self.has_skin()) {
             return;
         }
         let hints = Hints { kin: units_beside(path), ..analysis.hints.clone() };
@@ -60,7 +60,7 @@ impl Motion {
 
     /// Analyses the joints of a file of that name.
     pub fn new(name: String, file: MotionFile) -> Self {
-        let analysis = analyze_any(&file);
+        let analysis = analyze_any(&name, &file);
         Self { name, file, analysis }
     }
 
@@ -80,8 +80,8 @@ fn helped(mut error: Error) -> Error {
 
 /// Analyses the skin, or without one the skeleton in its most upright pose. A skeleton must be human, because any few
 /// nodes resemble some creature.
-fn analyze_any(file: &MotionFile) -> Option<RigAnalysis> {
-    let hints = Hints { exporter: file.generator.clone(), ..Hints::of_clips(&file.rig, &file.clips) };
+fn analyze_any(name: &str, file: &MotionFile) -> Option<RigAnalysis> {
+    let hints = character_hints(name, &file.rig, &file.clips, &file.generator);
     if let Ok(analysis) = analyze_hinted(&file.rig, &hints) {
         return Some(analysis);
     }

@@ -271,7 +271,7 @@ impl LoadedSettings {
             notes.push(format!("with the settings of {}", self.file));
         }
         notes.extend(assumed(&character.analysis));
-        notes.extend(self.doubt(&def).map(|doubt| doubt.reason));
+        notes.extend(self.doubt(character, &def).map(|doubt| doubt.reason));
         notes.append(&mut report.notes);
         report.notes = notes;
         Ok((def, report))
@@ -289,11 +289,22 @@ impl LoadedSettings {
         garments.map_err(|error| self.failure(&character.name, error))
     }
 
-    /// Returns the doubt about the mass, with advice; `None` if the user gave the mass or the unit.
-    pub fn doubt(&self, def: &RagdollDef) -> Option<Doubt> {
-        let is_given = self.settings.mass.is_some() || self.settings.unit.is_some();
-        let mut doubt = Doubt::of(def).filter(|_| !is_given)?;
-        doubt.reason += "; --height or --unit sets the size, --mass the mass";
+    /// Returns the doubt about the mass, with advice. A given unit is in doubt only if no body has such a mass.
+    pub fn doubt(&self, character: &CharacterFile, def: &RagdollDef) -> Option<Doubt> {
+        let Settings { mass, unit, .. } = self.settings;
+        let of_kind = || {
+            let analysis = &character.analysis;
+            Doubt::of_kind(def, analysis.animal.as_ref()?, analysis.unit_scale)
+        };
+        let is_counted = |doubt: &Doubt| doubt.is_gross || mass.is_some() || unit.is_none();
+        let mut doubt = Doubt::of(def).filter(is_counted).or_else(of_kind)?;
+        let advice = match (mass, unit) {
+            (Some(mass), _) => format!("the mass of {mass} kg is given, in kg"),
+            (_, Some(Unit::Height(height))) => format!("the height of {height} m is given, in metres"),
+            (_, Some(Unit::Scale(metres))) => format!("a unit of {metres} m is given"),
+            (None, None) => "--height or --unit sets the size, --mass the mass".to_owned(),
+        };
+        doubt.reason += &format!("; {advice}");
         Some(doubt)
     }
 

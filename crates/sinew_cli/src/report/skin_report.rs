@@ -128,6 +128,7 @@ pub fn skin_json(report: &SkinReport) -> Value {
         "clips_above_m": known(skin.clips_above_m),
         "foot_slide_m": known(rising.foot_slide_m),
         "pose_jump_m": known(rising.pose_jump_m),
+        "snap_m_s": known(rising.snap_m_s),
         "contiguous": skin.contiguous,
         "airborne_s": known(skin.airborne_s),
         "size_m": number(skin.size),

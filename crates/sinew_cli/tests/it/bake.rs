@@ -630,3 +630,33 @@ fn speed_moves_a_walk_on_the_spot_ahead() {
         assert!(run.code == Some(2) && run.stderr.contains(says), "{run:?}");
     }
 }
+
+/// A get-up that begins sitting used to begin in the crouch after it, to which a lying body snapped.
+#[needs_data]
+#[test]
+fn get_up_that_begins_sitting_starts_there() {
+    let folder = Folder::new("sits");
+    let file = shared_data().join("rigs/kaykit_Knight.glb").display().to_string();
+    let out = folder.path("out.glb");
+    let baked =
+        sinew(&["bake", &file, "--get-up", "Sit_Floor_StandUp", "--seconds", "7", "-o", &out]).stdout.clone();
+    let moment = |what: &str| {
+        let line = baked.lines().find(|line| line.ends_with(what)).unwrap_or_else(|| panic!("{baked}"));
+        let seconds = line.split_whitespace().next().expect("a time");
+        seconds.parse::<f32>().expect("a number")
+    };
+    let rises = moment("plays clip Walking_A again") - moment("gets up by clip Sit_Floor_StandUp");
+    // The clip lasts 1.13 s; it was entered after 0.31 s.
+    assert!(rises > 0.9, "{rises} s");
+}
+
+#[needs_data]
+#[test]
+fn hit_on_a_joint_without_a_body_meets_the_nearest() {
+    let folder = Folder::new("bodiless");
+    let file = shared_data().join("rigs/quaternius_Spider.glb").display().to_string();
+    let out = folder.path("out.glb");
+    let arguments = ["bake", &file, "--hit", "Body=0,0,5@0.4", "--seconds", "1", "-o", &out, "--json"];
+    let notes = sinew(&arguments).json()["notes"].to_string();
+    assert!(notes.contains("--hit Body: there is no such body; the nearest is hit"), "{notes}");
+}

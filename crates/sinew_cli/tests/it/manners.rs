@@ -150,6 +150,7 @@ fn steps_that_do_not_happen_are_reported() {
     let nowhere = bake(&["--seconds", "1", "--world", &empty, "--at", "0,0,0"]);
     assert!(nowhere.refusal(1).contains("no ground under the character at 0,0,0; --floor"), "{nowhere:?}");
     let all = check_output(&["--seconds", "1", "--at", "0,9,0"], "it does not get up: it touches nothing");
+    assert!(all.iter().any(|note| note.contains("the floor is 9.00 m below the character")), "{all:?}");
     assert!(!all.iter().any(|note| note.contains("it stands at")), "{all:?}");
     let half_extents = Vec3::new(9.0, 0.5, 9.0);
     let low = BodyDef {

@@ -164,6 +164,47 @@ fn neighbouring_files_decide_an_ambiguous_unit() {
     assert!(of_unit(&seen).contains("taken as centimetres"), "{seen:#}");
 }
 
+/// `inspect` used to ignore the file's name and its settings.
+#[test]
+fn inspect_and_build_agree_on_the_size() {
+    let folder = Folder::new("unit-agree");
+    let heights = |file: &str, extra: &[&str]| {
+        let seen = sinew(&[&["inspect", file, "--json"], extra].concat()).json();
+        let built = sinew(&[&["ragdoll", "build", file, "--json"], extra].concat()).json();
+        [seen, built].map(|object| object["height_m"].as_f64().expect("a height"))
+    };
+    for name in ["spider.glb", "creature.glb"] {
+        let file = folder.file(name, glb(&worm(5.9, 1.0), &[]));
+        let [seen, built] = heights(&file, &[]);
+        assert!((seen / built - 1.0).abs() < 1e-5, "{name}: {seen} and {built} m");
+    }
+    let file = folder.path("creature.glb");
+    let settings = r#"{"sinew": "ragdoll-settings", "version": 1, "height": 0.7}"#;
+    folder.file("creature.ragdoll.json", settings);
+    let [seen, built] = heights(&file, &[]);
+    assert!((seen - 0.7).abs() < 1e-3 && (built - 0.7).abs() < 1e-3, "{seen} and {built} m");
+    let [seen, built] = heights(&file, &["--unit", "cm"]);
+    assert!((seen / built - 1.0).abs() < 1e-5, "{seen} and {built} m");
+}
+
+/// Masses that nothing of the size has used to be called good when they were given.
+#[test]
+fn given_masses_and_heights_are_judged() {
+    let folder = Folder::new("unit-given");
+    let file = folder.file("body.glb", glb(&mannequin().rig, &[]));
+    let build = |extra: &[&str]| {
+        let object = sinew(&[&["ragdoll", "build", &file, "--json"], extra].concat()).json();
+        let reasons = object["quality"]["reasons"].to_string();
+        (object["quality"]["verdict"].as_str().expect("a verdict").to_owned(), reasons)
+    };
+    for extra in [["--mass", "0.5"], ["--mass", "9000"], ["--height", "180"]] {
+        let (verdict, reasons) = build(&extra);
+        assert!(verdict != "good" && reasons.contains("is given"), "{extra:?}: {verdict}, {reasons}");
+    }
+    let (verdict, reasons) = build(&["--mass", "90"]);
+    assert!(verdict == "good" && !reasons.contains("is given"), "{reasons}");
+}
+
 fn block(low: [f32; 3], high: [f32; 3]) -> BodyDef {
     let (low, high) = (Vec3::from_array(low), Vec3::from_array(high));
     let shapes = vec![ShapeDef::new(Shape::Box { half_extents: (high - low) * 0.5 })];

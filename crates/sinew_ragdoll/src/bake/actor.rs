@@ -95,7 +95,11 @@ impl<'a> Actor<'a> {
 
     /// Updates the character after a step of the world, and applies the pushes that are due at the step's end.
     pub fn update(&mut self, world: &mut World) {
+        let was_limp = self.is_limp();
         self.character.update(world);
+        if !was_limp && self.is_limp() {
+            self.meter.went_limp();
+        }
         self.note_events(self.ahead, world);
         self.push_due(world);
         self.frames.add_until(&self.character, world.time() as f32);
@@ -109,16 +113,17 @@ impl<'a> Actor<'a> {
         while let Some(&(time, push)) = self.pending.last().filter(|(time, _)| *time <= now) {
             debug_assert!(time <= now);
             self.pending.pop();
-            let is_limp = |actor: &Self| matches!(actor.character.state(), State::Limp | State::Preparing);
-            let was_limp = is_limp(self);
+            let was_limp = self.is_limp();
             match push {
+                // A character that has fallen already, over an edge, is not pushed.
+                Push::Limp { .. } if was_limp => self.character.go_limp(world),
                 Push::Limp { topple } => {
                     self.character.go_limp(world);
                     self.topple(topple, world);
                 }
                 Push::Hit { body, impulse } => {
                     let work = self.character.hit(world, body, impulse);
-                    if is_limp(self) {
+                    if self.is_limp() {
                         self.meter.pushed(work);
                     }
                 }
@@ -130,12 +135,16 @@ impl<'a> Actor<'a> {
                     self.character.return_to_clip(world, self.start, phase, seconds);
                 }
             }
-            if !was_limp && is_limp(self) {
+            if !was_limp && self.is_limp() {
                 self.meter.went_limp();
             }
         }
         self.note_events(noted, world);
         self.ahead = self.character.events().len() - noted;
+    }
+
+    fn is_limp(&self) -> bool {
+        matches!(self.character.state(), State::Limp | State::Preparing)
     }
 
     /// Rotates a limp body as a whole about the ground under its centre, so that its highest part gains the given velocity.

@@ -32,7 +32,7 @@ use crate::masses::de_leva::Sex;
 use crate::masses::{MassOptions, distribute, volume};
 use bones::{Anatomy, Bone, Bones};
 use sinew_anim::roles::RigAnalysis;
-use sinew_anim::{JointIdx, Rig, Take};
+use sinew_anim::{Animal, JointIdx, Rig, Take};
 use sinew_math::{Transform, Vec3};
 
 /// Options of a build.
@@ -141,7 +141,9 @@ pub(crate) fn build_overridden(
     let filter = filter_pairs(&bones, &mut fits, &poses);
     let enclosed = Enclosed::of(rig, &bones, bind);
     let mass = enclosed.as_ref().map(Enclosed::mass);
-    let weighs = MassOptions { total: options.mass, sex: options.sex, enclosed: mass };
+    let animal = analysis.animal.filter(|_| bones.anatomy == Anatomy::Creature);
+    let usual = animal.map(|animal| animal.mass_at(analysis.unit_scale));
+    let weighs = MassOptions { total: options.mass, sex: options.sex, enclosed: mass, usual };
     let masses = distribute(&bones, &fits, weighs);
     let total_mass = masses.iter().map(|mass| mass.mass).sum();
     // Friction depends on the mass, which depends on the shapes.
@@ -150,7 +152,9 @@ pub(crate) fn build_overridden(
         plan.def.friction_torque = torque;
     }
     let mut report = BuildReport::new(rig, &bones, &fits, &filter, (&plans, &limits));
-    report.notes.extend(enclosed.and_then(|enclosed| enclosed.note(total_mass)));
+    let flesh = enclosed.as_ref().and_then(|enclosed| enclosed.note(total_mass));
+    let kept = || mass_of_kind(animal?, analysis.unit_scale, total_mass, mass?);
+    report.notes.extend(flesh.or_else(|| kept().filter(|_| options.mass.is_none())));
     let name = |joint: JointIdx| joint_name(rig, joint);
     let bodies = bones.list.into_iter().zip(fits).zip(masses).map(|((bone, fit), mass)| RagdollBodyDef {
         bone: name(bone.joint),
@@ -175,6 +179,19 @@ pub(crate) fn build_overridden(
         character_from_model,
     };
     Ok((def, report))
+}
+
+/// Returns a note on a mass that was kept within the usual ones of such an animal; `None` if it was not. `flesh` is the
+/// mass that the skin encloses, kg.
+fn mass_of_kind(animal: Animal, unit_scale: f32, total_mass: f32, flesh: f32) -> Option<String> {
+    let [least, most] = animal.mass_at(unit_scale);
+    let is_kept = |end: f32| (total_mass / end - 1.0).abs() < 1e-3;
+    let name = animal.name;
+    (is_kept(least) || is_kept(most)).then(|| {
+        format!(
+            "the mass is {total_mass:.1} kg: a {name} of that size weighs {least:.1} to {most:.1} kg, and the skin encloses {flesh:.1} kg"
+        )
+    })
 }
 
 /// Volume that a creature's skin encloses, and its density.

@@ -412,9 +412,8 @@ impl Character {
     /// Gets up, or first prepares the body for getting up.
     pub(super) fn prepare(&mut self, world: &mut World) {
         let def = self.def.clone();
-        let moves = def.moves();
         let lies = self.figure.stance(&def, &mut self.scratch);
-        let choice = choose(&moves.get_ups, &moves.landmarks, &lies).filter(|choice| {
+        let choice = choose(&def, &lies).filter(|choice| {
             def.getting_ready == GettingReady::RollOver && !choice.is_near(&def, lies.pelvis)
         });
         self.scratch.points = lies.points;
@@ -431,7 +430,7 @@ impl Character {
     pub(super) fn get_up_where_free(&mut self, world: &mut World) {
         let lies = self.figure.stance(&self.def, &mut self.scratch);
         let moves = self.def.moves();
-        let place = match choose(&moves.get_ups, &moves.landmarks, &lies) {
+        let place = match choose(&self.def, &lies) {
             Some(choice) => choice.pose_similarity.motion,
             None => moves.landmarks.compare(&moves.upright, &lies).motion,
         };
@@ -455,7 +454,7 @@ impl Character {
         let lying = self.scratch.before.clone();
         let own = self.detail.map(|_| self.physique.own());
         let lean = ground::slope(world, &lies.points, own, def.ragdoll.total_mass);
-        let choice = choose(&moves.get_ups, &moves.landmarks, &lies);
+        let choice = choose(&def, &lies);
         let way = match choice {
             Some(Choice { get_up, start, pose_similarity }) => {
                 self.settle_into(world, pose_similarity.motion, lean, INTO_GET_UP);

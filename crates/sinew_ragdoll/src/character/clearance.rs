@@ -144,8 +144,6 @@ pub(super) struct Clearance {
     parts: Vec<Surface>,
     limbs: Vec<LimbChain>,
     stiff_arms: Vec<StiffArm>,
-    /// Skin of the pelvis; `None` for a rig without skin.
-    pelvis: Option<Surface>,
     /// Joint of each hand, and the skin of the hand with the objects that it holds.
     hands: Vec<(JointIdx, Surface)>,
     /// Joints that are not descendants of the limb that carries their body, each with the joint that it follows.
@@ -179,9 +177,7 @@ impl Clearance {
         let hands =
             held.map(skin).into_iter().enumerate().filter_map(|(hand, own)| Some((joint(hand)?, own)));
         let (parts, hands) = (chosen.map(skin).into(), hands.collect());
-        let seat = outermost(&surface, 0, &palette).into_iter().map(|(vertex, _)| vertex);
-        let pelvis = Some(skin(seat.collect()));
-        Self { parts, hands, strays: strays(rig, def), limbs, stiff_arms, pelvis }
+        Self { parts, hands, strays: strays(rig, def), limbs, stiff_arms }
     }
 
     /// Returns true for a rig without skin.
@@ -676,13 +672,6 @@ impl CharacterDef {
         local_to_model(&self.rig, pose, &self.mapping().character_from_model(), &mut model);
         let depth = self.clearance.depth(TRUNK, &model, &mut Vec::new());
         depth.is_finite().then_some(depth)
-    }
-
-    /// Returns the height of the lowest point of the pelvis's skin in the space of `model`; ∞ without skin.
-    pub(crate) fn seat_height(&self, model: &[Affine], palette: &mut Vec<Affine>) -> f32 {
-        let pelvis = self.clearance.pelvis.iter();
-        let places = pelvis.flat_map(|pelvis| pelvis.places(model, palette));
-        places.map(|place| place.y).fold(f32::INFINITY, min)
     }
 
     /// Raises feet, hands and elbows whose drawn skin is in the floor of a pose, by bending their limbs. If a hand

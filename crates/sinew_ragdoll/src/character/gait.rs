@@ -5,9 +5,9 @@ use super::figure::Figure;
 use super::stumble::level;
 use super::{CharacterDef, HitBodies, Locomotion, State, ground};
 use crate::character::tuning::{
-    CLIMB_SPEED, FASTEST_PACE, HIGHEST_STEP, LIFTS_OFF, MOST_ASIDE, MOST_BESIDE, MOST_PACES, OFF_GROUND,
-    PACE_RATE, PICKS_UP, POWERED_TURNS, PULL_RATE, PULL_SLACK, PULL_SPEED, PUSHED_ASIDE, STANDS_BELOW,
-    STANDS_IN, STEP_SETTLES, STEP_SLOPE,
+    CLIMB_SPEED, FASTEST_PACE, FOOTHOLD, HIGHEST_STEP, LIFTS_OFF, MOST_ASIDE, MOST_BESIDE, MOST_PACES,
+    OFF_GROUND, PACE_RATE, PICKS_UP, POWERED_TURNS, PULL_RATE, PULL_SLACK, PULL_SPEED, PUSHED_ASIDE,
+    STANDS_BELOW, STANDS_IN, STEP_SETTLES, STEP_SLOPE,
 };
 use sinew_anim::{Animator, ClipId, TrackDef, TrackId, smoothstep, weights_on_line};
 use sinew_math::{Rotation, Transform, Vec3, clamp, max, min, normalize_or, trig};
@@ -48,7 +48,7 @@ pub(super) struct Gait {
     pub blown: Vec3,
     /// Velocity at which the character follows a held limb, horizontal, m/s; zero between updates.
     pub pulled: Vec3,
-    /// True if the character was off the ground for too long or landed too fast.
+    /// True if the character was off the ground for too long, landed too fast, or, without a mover, went over an edge.
     pub falls: bool,
 }
 
@@ -109,8 +109,13 @@ impl Gait {
         }
         let mut to = from * step;
         let follows = def.motions().locomotion != Locomotion::Exact;
-        let below = follows.then(|| ground::below(world, to.translation, HIGHEST_STEP, own));
-        if let Some(height) = below.flatten() {
+        let below = follows.then(|| ground::below(world, to.translation, HIGHEST_STEP, own)).flatten();
+        let is_over_edge = below.is_none_or(|height| to.translation.y - height > HIGHEST_STEP);
+        let [before, now] = [from.translation, to.translation];
+        self.falls = follows
+            && is_over_edge
+            && ground::ends_between(world, [before, now], FOOTHOLD * def.ragdoll.height, own);
+        if let Some(height) = below.filter(|_| !self.falls) {
             to.translation.y += clamp(height - to.translation.y, -CLIMB_SPEED * dt, CLIMB_SPEED * dt);
         }
         figure.place = to;

@@ -3,8 +3,8 @@
 use super::CharacterDef;
 use super::figure::Figure;
 use super::moves::{GetUp, Start};
-use super::pose_similarity::{Landmarks, PoseSimilarity, Stance};
-use crate::character::tuning::{BEARS, BEARS_FOR, INTO_STANDING, ON_TOP, STRAIGHTENS};
+use super::pose_similarity::{PoseSimilarity, Stance};
+use crate::character::tuning::{BEARS, BEARS_FOR, INTO_STANDING, ON_TOP, STANDS, STRAIGHTENS};
 use sinew_anim::{Animator, TrackId, smoothstep};
 use sinew_math::{Rotation, Transform, Vec3};
 use sinew_physics::{BodyContact, BodyId, BodyKind, Effect, World};
@@ -94,15 +94,22 @@ pub(super) struct Choice<'a> {
     pub pose_similarity: PoseSimilarity,
 }
 
-/// Returns the best of all clips and clip times for a body in this pose.
-pub(super) fn choose<'a>(get_ups: &'a [GetUp], landmarks: &Landmarks, lies: &Stance) -> Option<Choice<'a>> {
-    let all = get_ups.iter().flat_map(|get_up| get_up.starts.iter().map(move |start| (get_up, start)));
-    all.map(|(get_up, start)| Choice {
-        get_up,
-        start,
-        pose_similarity: landmarks.compare(&start.stance, lies),
-    })
-    .reduce(|a, b| if b.pose_similarity.distance < a.pose_similarity.distance { b } else { a })
+/// Returns the best of all clips and clip times for a body in this pose; `None` without clips, or for a body that stands
+/// in nearly the pose of its looped clip, which needs no get-up.
+pub(super) fn choose<'a>(def: &'a CharacterDef, lies: &Stance) -> Option<Choice<'a>> {
+    let moves = def.moves();
+    let all = moves.get_ups.iter().flat_map(|get_up| get_up.starts.iter().map(move |start| (get_up, start)));
+    let best = all
+        .map(|(get_up, start)| Choice {
+            get_up,
+            start,
+            pose_similarity: moves.landmarks.compare(&start.stance, lies),
+        })
+        .reduce(|a, b| if b.pose_similarity.distance < a.pose_similarity.distance { b } else { a })?;
+    let upright = moves.landmarks.compare(&moves.upright, lies);
+    let turn = (upright.motion.rotation * moves.upright.pelvis).angle_to(lies.pelvis);
+    let stands = turn < STANDS[0] && upright.distance < STANDS[1] * def.ragdoll.height;
+    (!stands || best.pose_similarity.distance < upright.distance).then_some(best)
 }
 
 /// Returns the transform of a character tilted by `lean`, at the height at which its floor is at `ground` under the

@@ -1,7 +1,8 @@
 //! Ground under a character.
 
 use crate::character::tuning::{
-    BORNE, GROUND_DEPTH, LEAST_TREAD, LEVEL_GROUND, LIES_LOW, LIES_ON, LYING_SEARCH, STEEPEST_GROUND,
+    BORNE, GROUND_DEPTH, HIGHEST_STEP, LEAST_TREAD, LEVEL_GROUND, LIES_LOW, LIES_ON, LYING_SEARCH,
+    STEEPEST_GROUND,
 };
 use crate::def::RagdollDef;
 use sinew_math::{Rotation, Vec3, max, min, trig};
@@ -20,13 +21,16 @@ pub(super) fn below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId
 
 /// Returns the hit of [`below`], with the supporting body.
 pub(super) fn found_below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId]>) -> Option<BodyHit> {
-    let ray = Ray { origin: point + Vec3::Y * above, direction: Vec3::Y * -(above + GROUND_DEPTH) };
-    let hit = match own {
-        None => world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&ray)?,
-        Some(own) => bearer(world, &ray, own)?,
-    };
     // A ray that starts inside a shape does not give the height.
-    hit.start.is_none().then_some(hit)
+    first_below(world, point, above, own).filter(|hit| hit.start.is_none())
+}
+
+fn first_below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId]>) -> Option<BodyHit> {
+    let ray = Ray { origin: point + Vec3::Y * above, direction: Vec3::Y * -(above + GROUND_DEPTH) };
+    match own {
+        None => world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&ray),
+        Some(own) => bearer(world, &ray, own),
+    }
 }
 
 /// Returns the height of the ground under a point like [`below`], but ignores detached limbs, other characters, and
@@ -54,6 +58,27 @@ pub(super) fn bearer(world: &World, ray: &Ray, own: &[BodyId]) -> Option<BodyHit
         !matches!(world.contact_rule(ShapeId { body, shape }), ContactRule::Ghost | ContactRule::Yields(_))
     };
     world.query().filter(QueryFilter::without(own)).accept(bears).first(ray)
+}
+
+/// Returns true if a character that walked from one place to the next, without a mover, has left its ground: within
+/// `radius` of the first place ground is near, and within `radius` of the second it is lower than a step, or absent.
+pub(super) fn ends_between(
+    world: &World,
+    [from, to]: [Vec3; 2],
+    radius: f32,
+    own: Option<&[BodyId]>,
+) -> bool {
+    let height = |point: Vec3| {
+        let hit = first_below(world, point, HIGHEST_STEP, own)?;
+        // Inside a wall is no edge.
+        Some(if hit.start.is_some() { point.y } else { hit.point.y })
+    };
+    let highest = |at: Vec3| {
+        let aside = [Vec3::ZERO, Vec3::X, -Vec3::X, Vec3::Z, -Vec3::Z].map(|aside| at + aside * radius);
+        aside.into_iter().filter_map(height).reduce(max)
+    };
+    let Some(stood) = highest(from).filter(|&height| from.y - height <= HIGHEST_STEP) else { return false };
+    highest(to).is_none_or(|height| height < stood - HIGHEST_STEP)
 }
 
 /// Returns the condition of queries for shapes that push, neither sensors nor ghosts nor yielding ones.

@@ -234,10 +234,14 @@ impl Character {
 
     /// Exchanges hits, hit bodies and steering between the world and a character that its clips move.
     fn attend(&mut self, world: &mut World) {
+        // Outside of a world, only an edge fells a character.
+        if self.gait.falls && (self.is_in_world() || self.state() == State::Animated) {
+            return self.go_limp(world);
+        }
         if !self.is_in_world() {
             return;
         }
-        if self.gait.falls || self.is_swept_off() {
+        if self.is_swept_off() {
             return self.go_limp(world);
         }
         self.feel(world);

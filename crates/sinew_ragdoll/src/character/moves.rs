@@ -5,7 +5,9 @@ use super::floor::{Raised, moved};
 use super::mirror::Mirror;
 use super::pose_similarity::{Landmarks, Stance};
 use super::{CharacterDef, Locomotion, MotionSet, travel};
-use crate::character::tuning::{MAY_BEGIN, MIRRORED_FRAME, MOST_PACES, ROOT_FRAME, STARTS_APART};
+use crate::character::tuning::{
+    BEGINS_LYING, LOW_START, MAY_BEGIN, MIRRORED_FRAME, MOST_PACES, ROOT_FRAME, STARTS_APART,
+};
 use crate::def::RagdollDef;
 use crate::mapping::Mapping;
 use sinew_anim::take::Take;
@@ -13,7 +15,7 @@ use sinew_anim::{
     AnimatedClip, AnimationSet, BuiltClip, Clip, ClipBuildError, ClipBuildOptions, ClipId, LocalTransform,
     Markers, MotionTrack, Rig, Skeleton, Wrap, local_to_model, rest_pose, sample,
 };
-use sinew_math::{Affine, Transform, Vec3, max};
+use sinew_math::{Affine, Transform, Vec3, max, min};
 
 /// A clip of a character that cannot be played.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -263,10 +265,12 @@ fn way(def: &CharacterDef, locomotion: Locomotion, duration: f32) -> Option<Moti
     Some(MotionTrack::straight(model.vector(Vec3::Z * speed), duration, up))
 }
 
+/// Returns the times at which a get-up may begin. A clip that begins sitting may begin only while its pelvis is low, for
+/// a lying body would snap to the crouch after it.
 fn starts(def: &CharacterDef, landmarks: &Landmarks, take: &Take) -> Vec<Start> {
     let last = (take.frames() - 1) as f32 * MAY_BEGIN;
     let apart = usize::max(take.frames_in(STARTS_APART), 1);
-    (0..=last as usize)
+    let mut starts: Vec<Start> = (0..=last as usize)
         .step_by(apart)
         .map(|frame| {
             let (mut model, mut bodies) = (Vec::new(), Vec::new());
@@ -276,7 +280,14 @@ fn starts(def: &CharacterDef, landmarks: &Landmarks, take: &Take) -> Vec<Start> 
             let stance = landmarks.stance(mapping, &model, Transform::IDENTITY, points, &mut bodies);
             Start { time: take.time(frame), stance, bodies }
         })
-        .collect()
+        .collect();
+    let begins_lying = starts.first().is_some_and(|start| (start.stance.pelvis * Vec3::Y).y < BEGINS_LYING);
+    if !begins_lying {
+        let height = |start: &Start| start.stance.points[0].y;
+        let lowest = starts.iter().map(height).fold(f32::INFINITY, min);
+        starts.retain(|start| height(start) <= lowest + LOW_START * def.ragdoll.height);
+    }
+    starts
 }
 
 fn stance(rig: &Rig, mapping: &Mapping, landmarks: &Landmarks, pose: &[LocalTransform]) -> Stance {

@@ -403,6 +403,12 @@ pub(crate) const BORNE: f32 = 0.5;
 /// Larger: limbs pass through the floor. Smaller: limbs jerk. Shown by the tests of `pops`.
 pub(crate) const INTO_GET_UP: f32 = 0.35;
 
+/// Largest rotation of the pelvis, radians, and largest mean distance of the joints, as a share of the height, of a body
+/// at rest from the looped clip's pose for which it counts as standing and plays no get-up clip.
+///
+/// Larger: a kneeling body floats up. Smaller: a standing body lies down to get up. Shown by the tests of `character`.
+pub(crate) const STANDS: [f32; 2] = [0.7, 0.14];
+
 /// Time of the blend from the bodies' pose into the looped clip, if no get-up clip exists, seconds.
 ///
 /// Larger: the character floats up. Smaller: it jumps up. Shown by the tests of `pops`.
@@ -454,6 +460,12 @@ pub(crate) const ABOVE_PELVIS: f32 = 0.3;
 ///
 /// Larger: the character climbs tables. Smaller: it stops at stairs. Shown by the tests of `travel`.
 pub(crate) const HIGHEST_STEP: f32 = 0.45;
+
+/// Distance around the origin of a character without a mover within which ground keeps it from falling over an edge, as
+/// a share of its height.
+///
+/// Larger: it walks on air beyond an edge. Smaller: gaps in a floor fell it. Shown by the tests of `slopes`.
+pub(crate) const FOOTHOLD: f32 = 0.05;
 
 /// Depth to which the ground is searched, metres.
 ///
@@ -596,6 +608,18 @@ pub(crate) const MOVED: f32 = 1e-3;
 /// Larger: the get-up may begin nearly upright. Smaller: a sitting body lies down first. Shown by the tests of
 /// `character`.
 pub(crate) const MAY_BEGIN: f32 = 0.4;
+
+/// Uprightness of the pelvis, 1 upright, below which a get-up clip begins lying.
+///
+/// Larger: clips that begin sitting count as lying. Smaller: clips that begin on a side count as sitting. Shown by the
+/// tests of `rising`.
+pub(crate) const BEGINS_LYING: f32 = 0.6;
+
+/// Height of the pelvis over its lowest in a clip that begins sitting up to which a get-up may begin, as a share of the
+/// character's height.
+///
+/// Larger: a lying body snaps to a crouch. Smaller: fewer poses to choose from. Shown by the tests of `rising`.
+pub(crate) const LOW_START: f32 = 0.05;
 
 /// Time between the times at which a get-up may begin in its clip, seconds.
 ///

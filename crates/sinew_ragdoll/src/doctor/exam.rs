@@ -127,6 +127,14 @@ pub(super) fn anchors(def: &RagdollDef, joint: &RagdollJointDef) -> [Vec3; 2] {
     [point(joint.parent, joint.frame_parent), point(joint.child, joint.frame_child)]
 }
 
+/// Returns the angle by which the bind pose of a joint is beyond its limits, radians.
+pub(crate) fn beyond_at_bind(def: &RagdollDef, joint: &RagdollJointDef) -> f32 {
+    let frame =
+        |body: usize, frame: Transform| def.bodies[body].character_from_body.rotation * frame.rotation;
+    let seen = frame(joint.parent, joint.frame_parent).inverse() * frame(joint.child, joint.frame_child);
+    beyond(&joint.kind, seen).limit
+}
+
 /// Returns the angles by which the joint rotation `frame_a⁻¹ frame_b` exceeds the joint's freedom, radians.
 pub(super) fn beyond(kind: &JointKind, seen: Rotation) -> Beyond {
     let (swing, twist) = seen.swing_twist(Vec3::X);

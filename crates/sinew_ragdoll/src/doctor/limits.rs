@@ -5,7 +5,9 @@ use super::geometry::longest;
 use super::{Code, Finding};
 use crate::build::bones::Anatomy;
 use crate::build::part::Part;
-use crate::doctor::tuning::{BACKWARDS, BEYOND_AT_BIND, LOCKED, NARROW, NO_LIMIT, OTHER_ZERO};
+use crate::doctor::tuning::{
+    BACKWARDS, BEYOND_AT_BIND, LOCKED, NARROW, NO_LIMIT, OTHER_ZERO, WIDENED_MARGIN,
+};
 use core::f32::consts::PI;
 use sinew_math::limits::hinge_angle;
 use sinew_math::{
@@ -253,9 +255,22 @@ fn both_ways(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     if !matches!(parts, (Part::UpperArm, Part::Forearm) | (Part::Thigh, Part::Shank)) {
         return None;
     }
+    // A bind pose bent past straight needs that much of the range.
+    let mut needed = 0.0;
+    let mut fix = None;
     let (back, on) = match joint.kind {
         JointKind::Hinge { limit: Some(range) } => {
             let straight = straight_angle(exam, index);
+            let bound = hinge_angle(exam.turned(index, Rotation::IDENTITY).swing_twist(Vec3::X).1);
+            let is_forward = range.hi - straight >= straight - range.lo;
+            needed = max(if is_forward { straight - bound } else { bound - straight }, 0.0) + WIDENED_MARGIN;
+            let end = straight + if is_forward { -needed } else { needed };
+            let (lo, hi) = if is_forward { (end, range.hi) } else { (range.lo, end) };
+            let [lo, hi] = [lo.to_degrees().floor(), hi.to_degrees().ceil()];
+            fix = Some(format!(
+                "Let it bend one way only: `limits_deg` of {} with `\"twist\": [{lo:.0}, {hi:.0}]`, in which its bind pose lies.",
+                exam.def.bodies[joint.child].bone
+            ));
             (straight - range.lo, range.hi - straight)
         }
         JointKind::Ball { limit: Some(limit) } | JointKind::Universal { limit: Some(limit) } => {
@@ -264,7 +279,7 @@ fn both_ways(exam: &Exam<'_>, index: usize) -> Option<Finding> {
         _ => return None,
     };
     // Ranges wider than half a turn come from wrapped angles.
-    if sinew_math::min(back, on) <= BACKWARDS {
+    if sinew_math::min(back, on) <= max(BACKWARDS, needed + 0.5 * WIDENED_MARGIN) {
         return None;
     }
     let evidence = format!(
@@ -273,7 +288,9 @@ fn both_ways(exam: &Exam<'_>, index: usize) -> Option<Finding> {
         max(back, on).to_degrees(),
         sinew_math::min(back, on).to_degrees()
     );
-    Some(exam.finding(Code::BendsBothWays, &[joint.child, joint.parent], evidence))
+    let mut found = exam.finding(Code::BendsBothWays, &[joint.child, joint.parent], evidence);
+    found.fix = fix.unwrap_or(found.fix);
+    Some(found)
 }
 
 /// Returns the angle of a hinge at which its two bones are in line, radians.

@@ -34,6 +34,7 @@ mod shapes;
 mod tuning;
 
 pub use code::{Code, Severity};
+pub(crate) use exam::beyond_at_bind;
 pub(crate) use exam::bones_of;
 pub use exam::limit_reach;
 pub use finding::{Finding, Repair};
@@ -89,7 +90,7 @@ fn of_skin(flaw: &Flaw) -> Finding {
         bodies: flaw.bodies.clone(),
         bones: flaw.bones.clone(),
         evidence: flaw.evidence.clone(),
-        fix: code.fix().to_owned(),
+        fix: flaw.remedy.clone(),
         fixed: false,
     }
 }

@@ -35,6 +35,8 @@ pub struct MassOptions {
     /// Mass of the skin's enclosed volume, kg, for creatures. If the mass is unknown or does not match the shapes, the
     /// shapes determine the mass.
     pub enclosed: Option<f32>,
+    /// Least and largest mass, kg, between which a creature's mass is kept if `total` is `None`.
+    pub usual: Option<[f32; 2]>,
 }
 
 /// Ratios of the enclosed mass to the shapes' mass for which the enclosed mass is accepted.
@@ -57,7 +59,10 @@ pub fn distribute(bones: &Bones, fits: &[Fit], options: MassOptions) -> Vec<Mass
     let sum: f32 = shares.iter().sum();
     let total = options.total.unwrap_or_else(|| match bones.anatomy {
         Anatomy::Human => default_mass(bones.height, options.sex),
-        Anatomy::Creature => options.enclosed.filter(|mass| BELIEVED.contains(&(mass / sum))).unwrap_or(sum),
+        Anatomy::Creature => {
+            let own = options.enclosed.filter(|mass| BELIEVED.contains(&(mass / sum))).unwrap_or(sum);
+            options.usual.map_or(own, |[least, most]| max(min(own, most), least))
+        }
     });
     let shares: Vec<_> = shares.iter().map(|share| max(share / sum, LEAST_MASS)).collect();
     let sum: f32 = shares.iter().sum();

@@ -6,11 +6,12 @@ use crate::character::{CharacterEvent, State};
 use crate::def::{RagdollBodyDef, RagdollDef};
 use crate::skin::surface::Surface;
 use crate::tuning::{
-    FALLEN_OUT, HEAVY_PART, NEVER_STILL, OFF_FLOOR, ON_A_SIDE, OTHER_SIZE, STARTS_INSIDE, STILL_ON_LEGS,
-    STILL_UPRIGHT, TOPPLES,
+    FALLEN_OUT, GROUND_REACH, HEAVY_PART, NEVER_STILL, OFF_FLOOR, ON_A_SIDE, OTHER_SIZE, STARTS_INSIDE,
+    STILL_ON_LEGS, STILL_UPRIGHT, TOPPLES, WALKS_ON_AIR, WALKS_ON_AIR_FOR,
 };
 use sinew_anim::{LocalTransform, Rig, Role, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, min, trig};
+use sinew_physics::ray::Ray;
 use sinew_physics::{BodyKind, OverlapWith, PenetrationOf, Probe, Shape, World, WorldDef};
 
 /// Number of joints with skin from which a single body is not a ragdoll: few one-part characters have as many.
@@ -101,13 +102,13 @@ fn sides(def: &RagdollDef) -> Option<Fault> {
     found.into_iter().next()
 }
 
-/// Returns the faults of a baked character: out of the world, inside its static bodies, never still, still upright, or
-/// drawn at another size during a get-up.
+/// Returns the faults of a baked character: out of the world, inside its static bodies, in the air, never still, still
+/// upright, or drawn at another size during a get-up.
 ///
 /// # Panics
 /// If the bake does not belong to the input.
 pub fn faults_of_bake(input: &BakeInput<'_>, baked: &Baked) -> Vec<Fault> {
-    let fault = fell_out(input, baked).or_else(|| inside(input, baked));
+    let fault = fell_out(input, baked).or_else(|| inside(input, baked)).or_else(|| in_air(input, baked));
     let fault = fault.or_else(|| never_still(input, baked));
     let fault = fault.or_else(|| stays_standing(input, baked));
     fault.into_iter().chain(changes_size(input, baked)).collect()
@@ -135,7 +136,7 @@ fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     (!is_alike).then(|| {
         let reason = format!(
             "getting up it is drawn {times:.2} times as large as before its fall, for its clip scales {}; --clips FILE brings a clip to \
-             get up by that does so, too, --no-builtin-motions leaves it lying",
+             get up by that does so, too, --get-up none leaves it lying",
             first.bone
         );
         Fault::new(Verdict::Bad, reason)
@@ -213,6 +214,53 @@ fn inside(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let (bone, time) = (&def.bodies[0].bone, frame.time);
     let reason = format!("its clip moves it into the world: {bone} is inside it at {time:.1} s; {help}");
     Some(Fault::new(Verdict::Bad, reason))
+}
+
+/// Returns a fault if clips move a character over nothing: beyond an edge of its ground, or high above ground from the
+/// start.
+fn in_air(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+    // Keyframed bodies may carry it.
+    if !input.movers.is_empty() || !input.bodies.iter().any(|body| body.kind == BodyKind::Static) {
+        return None;
+    }
+    let mut world = World::new(WorldDef::default());
+    for body in input.bodies.iter().filter(|body| body.kind != BodyKind::Dynamic) {
+        world.add_body(body);
+    }
+    let under = |from: Vec3| {
+        let ray = Ray { origin: from, direction: Vec3::Y * -GROUND_REACH };
+        world.query().first(&ray).map_or(f32::NEG_INFINITY, |hit| hit.point.y)
+    };
+    let start = input.world_from_character.translation;
+    let stood = under(start + Vec3::Y * (0.5 * input.character.ragdoll.height));
+    if start.y - stood > WALKS_ON_AIR {
+        let reason = format!(
+            "it starts in the air, {:.2} m over the ground; --at X,Y,Z sets another place",
+            start.y - stood
+        );
+        return Some(Fault::new(Verdict::Usable, reason));
+    }
+    let gap = |frame: &Frame| {
+        let places = bodies_in(input, frame);
+        let lowest = places.iter().zip(&input.character.ragdoll.bodies);
+        let lowest = lowest.map(|(place, body)| body.shape.aabb(place).min.y).fold(f32::INFINITY, min);
+        let ground = under(places[0].translation);
+        if ground < stood - WALKS_ON_AIR { lowest - ground } else { 0.0 }
+    };
+    let mut in_air = 0;
+    for frame in &baked.frames {
+        let is_in_air = frame.state == State::Animated && gap(frame) > WALKS_ON_AIR;
+        in_air = if is_in_air { in_air + 1 } else { 0 };
+        if in_air as f32 > WALKS_ON_AIR_FOR * input.fps {
+            let reason = format!(
+                "its clip moves it on in the air: nothing is under it at {:.1} s; --at X,Y,Z and --facing DEG keep it on the ground, \
+                 --floor Y adds a floor",
+                frame.time
+            );
+            return Some(Fault::new(Verdict::Bad, reason));
+        }
+    }
+    None
 }
 
 /// Returns the height of the lowest point of all static geometry, metres; `None` without any.

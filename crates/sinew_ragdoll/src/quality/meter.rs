@@ -21,6 +21,8 @@ pub struct QualityMeter {
     overshoots: Vec<f32>,
     calm_steps: u32,
     calm_since: Option<f32>,
+    /// True once the bodies settled after the last fall began.
+    has_settled: bool,
     /// Deepest penetration of the bodies in the world in the last step, metres.
     penetration: f32,
     /// True if all bodies slept at some time and none has moved since.
@@ -41,6 +43,7 @@ impl QualityMeter {
             overshoots: Vec::with_capacity(samples),
             calm_steps: 0,
             calm_since: None,
+            has_settled: false,
             penetration: 0.0,
             asleep: false,
         }
@@ -50,6 +53,7 @@ impl QualityMeter {
     pub fn went_limp(&mut self) {
         self.calm_steps = 0;
         self.calm_since = None;
+        self.has_settled = false;
         self.asleep = false;
     }
 
@@ -117,13 +121,14 @@ impl QualityMeter {
         let q = &mut self.quality;
         self.calm_steps = if is_still(world, &ragdoll.bodies) { self.calm_steps + 1 } else { 0 };
         let mut still = self.calm_steps as f32 * world.def().dt();
-        if q.settled_s.is_none() && still >= STILL_TIME && is_sunk(world, &ragdoll.bodies) {
+        if !self.has_settled && still >= STILL_TIME && is_sunk(world, &ragdoll.bodies) {
             (self.calm_steps, still) = (0, 0.0);
         }
         if still >= STILL_TIME {
+            self.has_settled = true;
             q.settled_s.get_or_insert(now - still);
         }
-        if q.settled_s.is_some() {
+        if self.has_settled {
             let spin = |&body: &BodyId| world.velocity(body).angular.length();
             let fastest = ragdoll.bodies.iter().map(spin).fold(q.settled_omega_max.unwrap_or(0.0), max);
             q.settled_omega_max = Some(fastest);

@@ -47,7 +47,7 @@ pub struct FallQuality {
     pub limit_overshoot_p99_deg: f32,
     /// Deepest overlap with a static body while limp, metres.
     pub penetration_max_m: f32,
-    /// Deepest overlap with a static body once settled, metres.
+    /// Deepest overlap with a static body once settled, until the next fall, metres.
     pub penetration_rest_max_m: f32,
     /// Deepest overlap of two bodies of the character that are meant to collide and that no joint connects, metres.
     pub nonadjacent_overlap_max_m: f32,
@@ -57,7 +57,7 @@ pub struct FallQuality {
     pub settled_s: Option<f32>,
     /// Time when the character was first animated again.
     pub up_s: Option<f32>,
-    /// Fastest spin of a body once settled, rad/s.
+    /// Fastest spin of a body once settled, until the next fall, rad/s.
     pub settled_omega_max: Option<f32>,
     /// Time when all bodies first slept.
     pub asleep_s: Option<f32>,

@@ -2,7 +2,8 @@
 
 use super::{FallQuality, Verdict};
 use crate::def::RagdollDef;
-use crate::tuning::{BIG_HEAD, CREATURE_BUILD, ROUND};
+use crate::tuning::{BIG_HEAD, CREATURE_BUILD, FAR_OFF, ROUND};
+use sinew_anim::Animal;
 use sinew_math::{max, max3, min, min3, trig};
 
 /// Mass that a human may have, kg.
@@ -23,6 +24,8 @@ pub struct Doubt {
     pub reason: String,
     /// Factor on the size of the character that reduces its mass to the heaviest plausible one of its kind, at most 1.
     size: f32,
+    /// True if hardly any body of this kind, of any size, has this mass.
+    pub is_gross: bool,
 }
 
 impl Doubt {
@@ -39,6 +42,20 @@ impl Doubt {
                 "mass of {mass} at a height of {height:.3} m: hardly any {kind} weighs less than {least} or more than {most}"
             ),
             size: min(1.0, trig::pow(range.end() / def.total_mass, 1.0 / 3.0)),
+            is_gross: true,
+        })
+    }
+
+    /// Returns a doubt about a mass far outside of those of the animal that the file names, for a character whose unit
+    /// has this length, metres.
+    pub fn of_kind(def: &RagdollDef, animal: &Animal, unit_scale: f32) -> Option<Self> {
+        let [least, most] = animal.mass_at(unit_scale);
+        let is_usual = def.total_mass > least / FAR_OFF && def.total_mass < FAR_OFF * most;
+        (!is_usual).then(|| {
+            let [mass, least, most] = [def.total_mass, least, most].map(in_words);
+            let name = animal.name;
+            let reason = format!("mass of {mass}: a {name} of that size weighs {least} to {most}");
+            Self { reason, size: 1.0, is_gross: true }
         })
     }
 
@@ -48,7 +65,7 @@ impl Doubt {
         let (mass, height) = (def.total_mass, def.height);
         let doubt = |why: String| {
             let reason = format!("mass of {} at a height of {height:.3} m: {why}", in_words(mass));
-            Some(Self { reason, size: 1.0 })
+            Some(Self { reason, size: 1.0, is_gross: false })
         };
         if !HUMAN_BUILD.contains(&(mass / (height * height))) {
             return doubt("hardly any human of that height weighs as much".to_owned());
@@ -83,7 +100,7 @@ impl Doubt {
         let reason = format!(
             "mass of {mass} at a length of {longest:.3} m: hardly any creature of that size weighs as much"
         );
-        Some(Self { reason, size: 1.0 })
+        Some(Self { reason, size: 1.0, is_gross: false })
     }
 
     /// Judges a ragdoll in doubt, from drops or bakes, and returns verdict and reasons; `judge` judges the metrics of a

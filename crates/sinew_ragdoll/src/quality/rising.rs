@@ -2,9 +2,13 @@
 
 use super::{Fault, Verdict};
 use crate::bake::{BakeInput, Baked, Frame};
-use crate::character::{CharacterDef, State};
-use crate::tuning::{HIPS_BEAR, JUMPS, SLIDES, SLIDES_LEAST, STANDS_NEAR, STANDS_UPRIGHT};
-use sinew_anim::local_to_model;
+use crate::character::{CharacterDef, CharacterEvent, State};
+use crate::def::RagdollBodyDef;
+use crate::tuning::{
+    BLENDS_FOR, CLIP_FRAME, GRAVITY, HIPS_BEAR, JUMPS, SLIDES, SLIDES_LEAST, SNAPS, STANDS_NEAR,
+    STANDS_UPRIGHT,
+};
+use sinew_anim::{Clip, JointIdx, LocalTransform, Wrap, local_to_model, sample};
 use sinew_math::{Affine, Vec3, max, min};
 
 /// Metrics of getting up, metres; `None` if a character does not get up, or has no feet with skin.
@@ -16,6 +20,9 @@ pub struct RisingQuality {
     /// Largest motion of a body in the frame of a hand-over beyond its motion in the frames before and after: from
     /// bodies to a clip, and from a get-up to the next clip.
     pub pose_jump_m: Option<f32>,
+    /// Largest speed of trunk or head in the blend from the bodies' pose into a get-up clip, beyond their largest speed
+    /// in the clip itself, m/s; 0 if they are no faster.
+    pub snap_m_s: Option<f32>,
 }
 
 /// Measures all get-ups of a bake; `floor` is the height of the level floor (metres), if any.
@@ -27,6 +34,7 @@ pub fn measure_rising(input: &BakeInput<'_>, baked: &Baked, floor: Option<f32>) 
     RisingQuality {
         foot_slide_m: floor.and_then(|floor| foot_slide(def, baked, floor)),
         pose_jump_m: pose_jump(def, baked),
+        snap_m_s: snap(def, baked),
     }
 }
 
@@ -46,8 +54,69 @@ impl RisingQuality {
         };
         hold(self.foot_slide_m, max(SLIDES * height, SLIDES_LEAST), "a foot slides");
         hold(self.pose_jump_m, JUMPS * height, "the pose jumps");
+        let bar = SNAPS * (GRAVITY * height).sqrt();
+        if let Some(speed) = self.snap_m_s.filter(|speed| *speed > bar || speed.is_nan()) {
+            let reason = format!(
+                "it snaps into the clip by which it gets up: trunk or head are {speed:.1} m/s faster than in the clip, more than {bar:.1} m/s; \
+                 --get-up NAME takes a clip that begins as it lies, {help}"
+            );
+            faults.push(Fault { at_most: Verdict::Usable, reason });
+        }
         faults
     }
+}
+
+/// Returns the joints of pelvis, trunk and head.
+fn trunk(def: &CharacterDef) -> Vec<JointIdx> {
+    let is_trunk = |(index, body): &(usize, &RagdollBodyDef)| {
+        let role = body.role.as_str();
+        *index == 0 || role == "head" || role.ends_with("hest") || role.starts_with("spine")
+    };
+    def.ragdoll.bodies.iter().enumerate().filter(is_trunk).map(|(_, body)| body.joint).collect()
+}
+
+/// Returns the largest speed of these joints between two poses, m/s.
+fn speed(joints: &[JointIdx], [from, to]: [&[Affine]; 2], seconds: f32) -> f32 {
+    joints.iter().fold(0.0, |most, &joint| {
+        max(most, (to[joint].translation - from[joint].translation).length() / seconds)
+    })
+}
+
+/// Returns the largest speed of the trunk in a clip, m/s.
+fn speed_in_clip(def: &CharacterDef, baked: &Baked, clip: &Clip, trunk: &[JointIdx]) -> f32 {
+    let mut pose: Vec<LocalTransform> = def.rest().to_vec();
+    let (mut last, mut model) = (Vec::new(), Vec::new());
+    let count = (clip.duration / CLIP_FRAME) as usize;
+    (0..=count).fold(0.0, |most, frame| {
+        sample(clip, &def.rig, frame as f32 * CLIP_FRAME, Wrap::Clamp, &mut pose);
+        core::mem::swap(&mut last, &mut model);
+        local_to_model(&def.rig, &pose, &baked.world_from_model, &mut model);
+        if frame == 0 { 0.0 } else { max(most, speed(trunk, [&last, &model], CLIP_FRAME)) }
+    })
+}
+
+fn snap(def: &CharacterDef, baked: &Baked) -> Option<f32> {
+    let trunk = trunk(def);
+    let rises = baked.events.iter().filter_map(|&(time, event)| match event {
+        CharacterEvent::GettingUp { clip: Some(clip) } => Some((time, &def.motions().clips[clip])),
+        _ => None,
+    });
+    let (mut last, mut model) = (Vec::new(), Vec::new());
+    rises
+        .map(|(time, clip)| {
+            let blends = |frame: &&Frame| (time..time + BLENDS_FOR).contains(&frame.time);
+            let first = baked.frames.iter().position(|frame| blends(&frame)).unwrap_or(0);
+            let begins = first.saturating_sub(1);
+            let count = baked.frames[first..].iter().take_while(blends).count() + first - begins;
+            let mut fastest = 0.0;
+            for pair in baked.frames[begins..begins + count].windows(2) {
+                model_of(def, baked, &pair[0], &mut last);
+                model_of(def, baked, &pair[1], &mut model);
+                fastest = max(fastest, speed(&trunk, [&last, &model], pair[1].time - pair[0].time));
+            }
+            max(fastest - speed_in_clip(def, baked, clip, &trunk), 0.0)
+        })
+        .reduce(max)
 }
 
 fn model_of(def: &CharacterDef, baked: &Baked, frame: &Frame, model: &mut Vec<Affine>) {
@@ -72,8 +141,7 @@ fn foot_slide(def: &CharacterDef, baked: &Baked, floor: f32) -> Option<f32> {
             let up = model[foot.joint].to_rigid().rotation * foot.up;
             let places = foot.places(&model, &mut palette);
             let is_on = |place: Vec3| place.y < floor + near;
-            let sits = def.seat_height(&model, &mut palette) <= floor + near;
-            let is_up = up.y >= STANDS_UPRIGHT && model[hips].translation.y >= bears && !sits;
+            let is_up = up.y >= STANDS_UPRIGHT && model[hips].translation.y >= bears;
             if !is_up || !places.iter().any(|&place| is_on(place)) {
                 stance = None;
                 continue;

@@ -4,7 +4,7 @@ use super::bodies::{named, no_bone};
 use super::{BoneSettings, JointWish, Settings, SettingsError, ShapeWish};
 use crate::build::{BuildOptions, BuildReport, Overrides, build_overridden};
 use crate::def::{RagdollDef, RagdollJointDef};
-use crate::doctor::scaled;
+use crate::doctor::{beyond_at_bind, scaled};
 use crate::fit::{Fit, ShapeChoice};
 use crate::limits::LimitSource;
 use crate::masses::de_leva::Sex;
@@ -40,12 +40,15 @@ pub(super) fn build(
         enable: wishes.pairs(&settings.enable, "enable_pairs")?,
         takes,
     };
-    let (mut def, report) = build_overridden(rig, analysis, &options, &overrides)?;
+    let (mut def, mut report) = build_overridden(rig, analysis, &options, &overrides)?;
     wishes.check_enabled(&def, settings)?;
+    wishes.check_joints(&def, settings)?;
+    wishes.check_masses(settings, options.mass)?;
     wishes.weigh(&mut def, options.mass);
     for joint in &mut def.joints {
         *joint = wishes.joint(joint);
     }
+    report.notes.extend(def.joints.iter().filter_map(|joint| wishes.leaves_out_bind(&def, joint)));
     Ok((def, report))
 }
 
@@ -115,6 +118,75 @@ impl<'a> Wishes<'a> {
         Ok(())
     }
 
+    /// Rejects settings that a body's joint does not have.
+    fn check_joints(&self, def: &RagdollDef, settings: &Settings) -> Result<(), SettingsError> {
+        let kept = settings.bones.iter().filter(|(_, bone)| bone.body != Some(super::BodyWish::Drop));
+        for (name, bone) in kept {
+            let asked = |key: &str, is_given: bool| is_given.then(|| format!("bones.{name}.{key}"));
+            let swing = asked("limits_deg.swing_y", bone.swing_y.is_some())
+                .or_else(|| asked("limits_deg.swing_z", bone.swing_z.is_some()));
+            let twist = asked("limits_deg.twist", bone.twist.is_some());
+            let any = swing.clone().or_else(|| twist.clone());
+            let any_or_type = any
+                .clone()
+                .or_else(|| asked("type", bone.joint.is_some()))
+                .or_else(|| asked("friction_torque", bone.friction_torque.is_some()));
+            let Some(place) = &any_or_type else { continue };
+            for body in self.named(name, place)? {
+                let Some(joint) = def.joints.iter().find(|joint| joint.child == body) else {
+                    let what = format!("`{name}` is the first body, which has no joint to a parent");
+                    return Err(SettingsError::at(place.clone(), what));
+                };
+                let (place, what) = match (self.joint(joint).kind, &swing, &twist, &any) {
+                    (JointKind::Hinge { .. }, Some(place), ..) => (
+                        place,
+                        format!("`{name}` is a hinge, which has `twist` only; \"type\": \"ball\" has swings"),
+                    ),
+                    (JointKind::Universal { .. }, _, Some(place), _) => {
+                        (place, format!("`{name}` is a universal joint, which has swings only"))
+                    }
+                    (JointKind::Fixed, .., Some(place)) => (
+                        place,
+                        format!("`{name}` has a fixed joint, which has no limits; \"type\" sets another"),
+                    ),
+                    _ => continue,
+                };
+                return Err(SettingsError::at(place.clone(), what));
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns a note on ranges of the settings that leave out the bind pose.
+    fn leaves_out_bind(&self, def: &RagdollDef, joint: &RagdollJointDef) -> Option<String> {
+        let wish = &self.bodies[joint.child];
+        [wish.swing_y, wish.swing_z, wish.twist].iter().any(Option::is_some).then_some(())?;
+        let beyond = beyond_at_bind(def, joint).to_degrees();
+        (beyond > 1.0).then(|| {
+            let [role, bone] = &self.names[joint.child];
+            format!(
+                "the bind pose of {role} ({bone}) is {beyond:.0}° beyond its `limits_deg`: a ragdoll that starts there is pushed; \
+                 `ragdoll doctor --fix` widens them"
+            )
+        })
+    }
+
+    /// Rejects masses of bones that leave none of the total for the other bodies.
+    fn check_masses(&self, settings: &Settings, total: Option<f32>) -> Result<(), SettingsError> {
+        let Some(total) = total else { return Ok(()) };
+        let given: Vec<f32> = self.bodies.iter().filter_map(|wish| wish.mass).collect();
+        let sum: f32 = given.iter().sum();
+        if sum < total || given.is_empty() || given.len() == self.bodies.len() {
+            return Ok(());
+        }
+        let of_bone = settings.bones.iter().rev().find(|(_, bone)| bone.mass.is_some());
+        let place = of_bone.map_or("mass".to_owned(), |(name, _)| format!("bones.{name}.mass"));
+        let what = format!(
+            "masses of bones add up to {sum} kg, which leaves nothing of the total of {total} kg for the other bodies"
+        );
+        Err(SettingsError::at(place, what))
+    }
+
     /// Returns the shape of a body: `fit` is the build's shape, `other` computes a shape of another kind.
     fn shape(&self, body: usize, fit: Fit, other: &dyn Fn(ShapeChoice) -> Fit) -> Fit {
         let wish = &self.bodies[body];
@@ -141,7 +213,6 @@ impl<'a> Wishes<'a> {
         let given: f32 = (0..def.bodies.len()).filter_map(wanted).sum();
         let free: f32 =
             (0..def.bodies.len()).filter(|&b| wanted(b).is_none()).map(|b| def.bodies[b].mass.mass).sum();
-        // If the given masses exceed the total, the other bodies keep their masses.
         let rest = total.map(|total| (total - given) / free).filter(|rest| *rest > 0.0).unwrap_or(1.0);
         let rest = if given > 0.0 { rest } else { 1.0 };
         for body in 0..def.bodies.len() {

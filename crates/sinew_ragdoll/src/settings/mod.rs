@@ -36,7 +36,7 @@ use crate::fit::ShapeChoice;
 use crate::limits::LimitSource;
 use crate::masses::de_leva::Sex;
 use sinew_anim::roles::{RigAnalysis, Role};
-use sinew_anim::{Rig, Springs, Take, guess_springs};
+use sinew_anim::{JointIdx, Rig, Springs, Take, guess_springs};
 use sinew_math::{Range, Vec3};
 
 /// Requested changes to the build. The default changes nothing.
@@ -218,6 +218,17 @@ pub fn build_moving(
     let analysis = correct::corrected(rig, &seen, analysis, &correction, settings)?;
     let analysis = bodies::settled(rig, analysis, settings)?;
     apply::build(&seen, &analysis, options, settings, takes)
+}
+
+impl Settings {
+    /// Returns the joints of a rig that are not part of the body, without those below them: joints to ignore, and those of
+    /// garments.
+    ///
+    /// # Errors
+    /// If a name matches no joint.
+    pub fn ignored_joints(&self, rig: &Rig) -> Result<Vec<JointIdx>, SettingsError> {
+        Ok(correct::correction(rig, self)?.ignored)
+    }
 }
 
 /// Returns an analysis corrected by the settings: roles, ignored joints, unit and axis. The build decides which bones

@@ -34,6 +34,38 @@ fn run_until(
     events
 }
 
+/// A limp body with stiff joints stays on its feet; it used to dive to the floor to play its get-up clip.
+#[test]
+fn body_that_stands_needs_no_get_up_clip() {
+    let mut def = walker();
+    let motions = MotionSet { looped: None, ..def.motions().clone() };
+    def.set_motions(motions).expect("they play");
+    def.ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque = 1e4);
+    for body in &mut def.ragdoll.bodies {
+        if body.role.ends_with("Foot") {
+            body.shape = Shape::Box { half_extents: Vec3::new(0.3, 0.05, 0.3) };
+        }
+    }
+    let (def, mut world) = (shared(def), world());
+    let mut character = Character::new(def, Transform::IDENTITY, 0.0);
+    let head = place_of(&character, "head").y;
+    character.go_limp(&mut world);
+    let mut lowest = head;
+    let mut clips = Vec::new();
+    for _ in 0..600 {
+        world.step();
+        character.update(&mut world);
+        lowest = f32::min(lowest, place_of(&character, "head").y);
+        clips.extend(character.events().iter().filter_map(|event| match event {
+            CharacterEvent::GettingUp { clip } => Some(*clip),
+            _ => None,
+        }));
+    }
+    assert!(lowest > 0.8 * head, "its head goes down to {lowest} m from {head} m");
+    assert_eq!(clips, [None]);
+    assert_eq!(character.state(), State::Animated);
+}
+
 /// Returns the world position of a joint, metres.
 fn place_of(character: &Character, name: &str) -> Vec3 {
     let def = character.def();

@@ -6,8 +6,10 @@ use needs_data::needs_data;
 use sinew_math::{Range, Rotation, SwingTwistLimit, Sym3, Transform, Vec3};
 use sinew_physics::{Hull, JointKind, MassProperties, Shape, Softness};
 use sinew_ragdoll::doctor::{Code, Finding, Severity, limit_reach};
+use sinew_ragdoll::skin::FlawKind;
 use sinew_ragdoll::{
-    BuildOptions, RagdollBodyDef, RagdollDef, RagdollJointDef, Repair, build, cure, doctor, drop_test, gate,
+    BuildOptions, Flaw, RagdollBodyDef, RagdollDef, RagdollJointDef, Repair, Verdict, build, cure, doctor,
+    drop_test, gate,
 };
 
 /// Returns a healthy ragdoll with its rig.
@@ -521,4 +523,44 @@ fn joint_reach_follows_its_limits() {
     assert!((reach(&hinge, bent, Vec3::X) - 115.0).abs() < 0.02);
     assert!((reach(&hinge, bent, -Vec3::X) - 27.0).abs() < 0.02);
     assert_eq!(limit_reach(&JointKind::Ball { limit: None }, middle, Vec3::Y), core::f32::consts::PI);
+}
+
+/// The remedy for a knee names a range that leads to no other finding.
+#[test]
+fn advice_on_a_knee_leads_to_no_other_finding() {
+    let ranges = |repair: &Repair| -> Vec<(Code, String)> {
+        let of_joints = [Code::BendsBothWays, Code::LimitViolatedAtBind];
+        let found = doctor(repair).into_iter().filter(|found| of_joints.contains(&found.code));
+        found.map(|found| (found.code, found.fix)).collect()
+    };
+    for bend in [-60_f32, -29.0] {
+        let mut repair = healthy();
+        joint(&mut repair, "leftLowerArm").kind =
+            JointKind::Hinge { limit: Some(Range::degrees(bend, 142.0)) };
+        let found = ranges(&repair);
+        assert_eq!(found.len(), 1, "{found:?}");
+        let (_, range) = found[0].1.split_once("\"twist\": [").expect("a range");
+        let (lo, rest) = range.split_once(", ").expect("two numbers");
+        let (hi, _) = rest.split_once(']').expect("an end");
+        let [lo, hi] = [lo, hi].map(|number| number.parse::<f32>().expect("a number"));
+        joint(&mut repair, "leftLowerArm").kind = JointKind::Hinge { limit: Some(Range::degrees(lo, hi)) };
+        assert_eq!(ranges(&repair), [], "{lo} to {hi}");
+    }
+}
+
+/// A finding on the skin names the bone in its remedy, as the judge does.
+#[test]
+fn remedy_for_skin_names_the_bone() {
+    let flaw = Flaw {
+        kind: FlawKind::Uncovered,
+        evidence: "80 % of the skin is near its body".to_owned(),
+        remedy: "--body Ear1.L gives that part a body of its own".to_owned(),
+        bodies: vec![0],
+        bones: vec!["Head".to_owned()],
+        at_most: Verdict::Usable,
+    };
+    let repair = Repair { skin: vec![flaw.clone()], ..healthy() };
+    let found = doctor(&repair);
+    let skin = found.iter().find(|found| found.code == Code::SkinUncovered).expect("a finding");
+    assert_eq!(skin.fix, flaw.remedy);
 }

@@ -255,6 +255,11 @@ fn block(skinned: &mut Primitive, center: Vec3, half_extents: Vec3, slot: u16) {
 /// Returns an animal of blocks: a node that carries a trunk of two parts on four legs of one bone. `rust` is added to
 /// the friction of its joints, N·m.
 fn animal(rust: f32) -> CharacterDef {
+    animal_named("", rust)
+}
+
+/// Returns the animal of a file of this name.
+fn animal_named(name: &str, rust: f32) -> CharacterDef {
     let legs = |z: f32| [0.13, -0.13].map(|x| Vec3::new(x, 0.4, z));
     let mut places = vec![(None, Vec3::ZERO)];
     places.extend([(Some(0), Vec3::new(0.0, 0.5, -0.3)), (Some(1), Vec3::new(0.0, 0.5, 0.3))]);
@@ -277,7 +282,7 @@ fn animal(rust: f32) -> CharacterDef {
         places.iter().map(|&(_, at)| Affine { translation: -at, ..Affine::IDENTITY }).collect();
     rig.skins = vec![Skin { name: String::new(), joints: (0..places.len()).collect(), inverse_bind }];
     rig.meshes = vec![RigMesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![skinned] }];
-    let upright = Hints { up: Some(Vec3::Y), ..Hints::default() };
+    let upright = Hints { name: name.into(), up: Some(Vec3::Y), ..Hints::default() };
     let analysis = analyze_hinted(&rig, &upright).expect("a skin");
     let (mut ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
     ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque += rust);
@@ -332,4 +337,55 @@ fn rump_that_counts_as_a_limb_is_seen() {
     let input = limp_for_6_s(character, &ground);
     let found = faults_of_bake(&input, &bake(&input));
     assert!(found.iter().any(|fault| fault.reason.contains("stays on its legs")), "{found:?}");
+}
+
+/// A character that its clip moves beyond the edge of its ground, or that starts high above it, is not good.
+#[test]
+fn character_in_the_air_is_not_good() {
+    let (rig, own) = (mannequin().rig, mannequin().clips);
+    let analysis = analyze(&rig).expect("a skin");
+    let mut character = CharacterDef::new(rig, built(), &analysis.bind_model);
+    let motions = MotionSet {
+        clips: own,
+        looped: Some(0),
+        locomotion: Locomotion::Forward { speed: 1.4 },
+        ..MotionSet::default()
+    };
+    character.set_motions(motions).expect("it can be played");
+    let character = Arc::new(character);
+    let reasons = |edge: f32, up: f32| {
+        let half_extents = Vec3::new(3.0, 0.5, edge);
+        let table = BodyDef { position: Vec3::NEG_Y * 0.5, ..BodyDef::fixed(Shape::Box { half_extents }) };
+        let bodies = [table];
+        let mut input = BakeInput { bodies: &bodies, seconds: 2.0, ..BakeInput::new(character.clone()) };
+        input.world_from_character.translation.y = up;
+        let mut baked = bake(&input);
+        // A character that falls over the edge counts as if its clip had moved it on.
+        let root = character.rig.joints.iter().position(|joint| joint.parent.is_none()).expect("a root");
+        for frame in &mut baked.frames {
+            if frame.state != State::Animated {
+                frame.state = State::Animated;
+                frame.pose = character.rest().to_vec();
+                frame.pose[root].translation.z += 1.4 * frame.time / character.ragdoll.unit_scale;
+            }
+        }
+        faults_of_bake(&input, &baked)
+    };
+    assert_eq!(reasons(9.0, 0.0), []);
+    let beyond = reasons(1.0, 0.0);
+    assert!(beyond[0].reason.starts_with("its clip moves it on in the air"), "{beyond:?}");
+    assert_eq!(beyond[0].at_most, Verdict::Bad);
+    let above = reasons(9.0, 5.0);
+    assert!(above[0].reason.starts_with("it starts in the air, 5.00 m over"), "{above:?}");
+    assert_eq!(above[0].at_most, Verdict::Usable);
+}
+
+/// The thick skin of a toy animal encloses several times the mass of the animal that its file names.
+#[test]
+fn animal_weighs_no_more_than_its_kind() {
+    let plain = animal_named("", 0.0).ragdoll;
+    let fox = animal_named("fox", 0.0).ragdoll;
+    assert!((fox.height - plain.height).abs() < 1e-3, "{} and {} m", fox.height, plain.height);
+    assert!(plain.total_mass > 60.0, "{} kg", plain.total_mass);
+    assert!(fox.total_mass > 5.0 && fox.total_mass < 35.0, "{} kg", fox.total_mass);
 }

@@ -7,8 +7,8 @@ use sinew_physics::{BodyDef, Shape, World, WorldDef};
 use sinew_ragdoll::quality::{RisingQuality, measure_rising};
 use sinew_ragdoll::skin::Stage;
 use sinew_ragdoll::{
-    BakeHit, BakeInput, Baked, Character, CharacterDef, FootPlanting, GroundContact, SkinMeter, State,
-    Verdict, bake,
+    BakeHit, BakeInput, Baked, Character, CharacterDef, FootPlanting, GettingReady, GroundContact, MotionSet,
+    SkinMeter, State, Verdict, bake,
 };
 use std::sync::Arc;
 
@@ -136,9 +136,10 @@ fn only_feet_that_bear_the_body_slide() {
 
 #[test]
 fn metrics_beyond_their_bounds_are_reported() {
-    let bad = RisingQuality { foot_slide_m: Some(0.2), pose_jump_m: Some(f32::NAN) };
+    let bad =
+        RisingQuality { foot_slide_m: Some(0.2), pose_jump_m: Some(f32::NAN), snap_m_s: Some(f32::NAN) };
     let faults = bad.faults(HEIGHT);
-    assert_eq!(faults.len(), 2, "{faults:?}");
+    assert_eq!(faults.len(), 3, "{faults:?}");
     assert!(faults.iter().all(|fault| fault.at_most == Verdict::Usable));
     assert!(faults[0].reason.starts_with("getting up a foot slides by 20.0 cm"), "{faults:?}");
 }
@@ -244,4 +245,29 @@ fn parts_stay_out_of_a_wall_beside_the_body() {
     let now = deepest(GroundContact::Enforced, FootPlanting::OnGround);
     println!("{by_clip} m deep by the clips, {now} m now");
     assert!(by_clip > 0.2 && now < 0.1, "depth {by_clip} m by the clips, {now} m now");
+}
+
+/// A body that lies on its face while its only get-up clip begins on its back snaps over if it may not roll over first;
+/// the judge reports that.
+#[test]
+fn get_up_from_another_side_is_reported() {
+    let snap = |getting_ready: GettingReady| {
+        let mut def = walker();
+        (def.getting_ready, def.ground_contact) = (getting_ready, GroundContact::Enforced);
+        let supine = def.motions().get_ups[0];
+        let motions = MotionSet { get_ups: vec![supine], ..def.motions().clone() };
+        def.set_motions(motions).expect("they play");
+        let def = shared(def);
+        let body = def.body_named("chest").expect("it has a chest");
+        let (bodies, hits) = ([floor()], [BakeHit { time: 0.8, body, impulse: Vec3::Z * 70.0 }]);
+        let input = BakeInput { bodies: &bodies, hits: &hits, seconds: 9.0, ..BakeInput::new(def) };
+        let rising = measure_rising(&input, &bake(&input), Some(0.0));
+        let faults = rising.faults(HEIGHT);
+        let is_reported = faults.iter().any(|fault| fault.reason.starts_with("it snaps into the clip"));
+        (rising.snap_m_s.expect("it gets up by a clip"), is_reported)
+    };
+    let [(rolled, is_rolled_bad), (thrown, is_thrown_bad)] =
+        [GettingReady::RollOver, GettingReady::AtOnce].map(snap);
+    println!("{rolled} m/s after a roll, {thrown} m/s without");
+    assert!(thrown > 2.0 * rolled && is_thrown_bad && !is_rolled_bad, "{rolled} and {thrown} m/s");
 }

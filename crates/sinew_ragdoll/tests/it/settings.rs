@@ -95,6 +95,34 @@ fn joints_of_both_sides_are_mirrored() {
     assert_eq!(def.joints[body(&def, "neck") - 1].kind, JointKind::Fixed);
 }
 
+/// Settings without effect used to be accepted.
+#[test]
+fn settings_that_a_joint_or_a_total_rules_out_are_refused() {
+    let wrong = |name: &str, bone: BoneSettings, total: Option<f32>| match with(&Settings {
+        mass: total,
+        ..of_bone(name, bone)
+    }) {
+        Err(SettingsError::Setting { what, place }) => format!("{what} ({place})"),
+        other => panic!("{other:?}"),
+    };
+    let usual = BoneSettings::default();
+    let range = Some(Range::degrees(-10.0, 10.0));
+    let swings = wrong("lowerLeg", BoneSettings { swing_y: range, ..usual }, None);
+    assert!(
+        swings.contains("is a hinge") && swings.contains("(bones.lowerLeg.limits_deg.swing_y)"),
+        "{swings}"
+    );
+    let root = wrong("hips", BoneSettings { friction_torque: Some(1.0), ..usual }, None);
+    assert!(root.contains("is the first body"), "{root}");
+    let stiff = BoneSettings { joint: Some(JointWish::Fixed), twist: range, ..usual };
+    let stiff = wrong("head", stiff, None);
+    assert!(stiff.contains("no limits"), "{stiff}");
+    let heavy = wrong("head", BoneSettings { mass: Some(30.0), ..usual }, Some(20.0));
+    assert!(heavy.contains("add up to 30 kg") && heavy.contains("(bones.head.mass)"), "{heavy}");
+    let hinge = BoneSettings { swing_y: range, joint: Some(JointWish::Ball), ..usual };
+    with(&of_bone("lowerLeg", hinge)).expect("a ball swings");
+}
+
 #[test]
 fn bones_can_be_dropped_and_kept() {
     let rig = mannequin().rig;

@@ -57,6 +57,9 @@ fn gets_up(def: &Arc<CharacterDef>, ground: &[BodyDef], push: Vec3) -> [f32; 3] 
     for _ in 0..900 {
         world.step();
         character.update(&mut world);
+        if rising > 0 && character.state() == State::Animated {
+            break;
+        }
         rising = if character.state() == State::GettingUp { rising + 1 } else { 0 };
         // The body pose has decayed.
         if rising > 25 {
@@ -249,5 +252,34 @@ fn planted_feet_survive_snapshots_and_hand_over() {
         assert!(speed < 0.02, "{}: {speed} m/s", def.role);
         let off = (world.transform(body).translation - shown.translation).length();
         assert!(off < 1e-5, "{}: {off} m from the drawn pose", def.role);
+    }
+}
+
+/// A character without a mover used to walk on in the air where its ground ends.
+#[test]
+fn walker_falls_over_the_edge_of_its_ground() {
+    let def = shared(walker());
+    let table = || fixed(Vec3::new(3.0, 0.5, 1.0), Vec3::NEG_Y * 0.5, Rotation::IDENTITY);
+    let pit = fixed(Vec3::new(20.0, 0.5, 20.0), Vec3::NEG_Y * 3.5, Rotation::IDENTITY);
+    let walked = |ground: &[BodyDef]| {
+        let mut world = world_of(ground);
+        let mut character = Character::new(def.clone(), Transform::IDENTITY, 0.0);
+        let mut far: f32 = 0.0;
+        for _ in 0..240 {
+            world.step();
+            character.update(&mut world);
+            if character.state() == State::Animated {
+                far = max(far, character.world_from_character().translation.z);
+            }
+        }
+        (far, character.state())
+    };
+    for ground in [vec![table()], vec![table(), pit]] {
+        let (far, state) = walked(&ground);
+        assert!((0.9..1.3).contains(&far) && state != State::Animated, "{far} m: {state:?}");
+    }
+    for ground in [slope(20.0), stairs(), vec![floor()]] {
+        let (far, state) = walked(&ground);
+        assert!(far > 4.0 && state == State::Animated, "{far} m: {state:?}");
     }
 }

@@ -67,7 +67,7 @@ struct JoltCloth {
 
 impl ClothSimulation for JoltCloth {
     fn step(&mut self) {
-        step(&mut self.world);
+        step(&mut self.world, 1);
     }
 
     fn particles(&self, out: &mut Vec<ParticleState>) {

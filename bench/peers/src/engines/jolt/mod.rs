@@ -12,7 +12,8 @@ mod filters;
 mod shapes;
 
 use crate::engine::{
-    BodyState, ClothSimulation, Description, Engine, RayCaster, Simulation, Unsupported, circular_cone,
+    BodyState, ClothSimulation, Description, Effort, Engine, RayCaster, Simulation, Unsupported,
+    circular_cone,
 };
 use crate::scenes::{ClothScene, DT, RayScene};
 use core::ops::Range;
@@ -55,7 +56,12 @@ impl Engine for Jolt {
         }
     }
 
-    fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported> {
+    fn build_at(&self, scene: &Blueprint, effort: Effort) -> Result<Box<dyn Simulation>, Unsupported> {
+        let substeps = match effort {
+            Effort::Default => 1,
+            Effort::Substeps(substeps) => substeps,
+            Effort::Quality(_) => return Err(Unsupported::new("an effort as a quality: use substeps")),
+        };
         let filters = Filters::new(scene)?;
         let mut world = new_world(scene.gravity, scene.bodies.len(), filters.layers())?;
         let mut bodies = Vec::with_capacity(scene.bodies.len());
@@ -70,7 +76,7 @@ impl Engine for Jolt {
             add_joint(&mut world, [bodies[def.a], bodies[def.b]], def)?;
         }
         world.optimize_broad_phase();
-        Ok(Box::new(JoltWorld { world, bodies }))
+        Ok(Box::new(JoltWorld { world, bodies, substeps }))
     }
 
     fn build_cloth(&self, scene: &ClothScene) -> Result<Box<dyn ClothSimulation>, Unsupported> {
@@ -169,23 +175,25 @@ fn add_joint(world: &mut PhysicsWorld, [a, b]: [BodyId; 2], def: &BlueprintJoint
     .map_err(refused)
 }
 
-/// Takes one step.
+/// Takes one step of 1/60 s in `substeps` collision steps.
 ///
 /// # Panics
 /// If Jolt had to drop contacts.
-fn step(world: &mut PhysicsWorld) {
-    let report = world.step(DT).expect("a step of 1/60 s is within bounds");
+fn step(world: &mut PhysicsWorld, substeps: u32) {
+    let report =
+        world.step_with_collision_steps(DT, substeps).expect("steps of 1/3840 s and more are within bounds");
     assert!(report.is_complete(), "Jolt had room for all contacts: {report:?}");
 }
 
 struct JoltWorld {
     world: PhysicsWorld,
     bodies: Vec<BodyId>,
+    substeps: u32,
 }
 
 impl Simulation for JoltWorld {
     fn step(&mut self) {
-        step(&mut self.world);
+        step(&mut self.world, self.substeps);
     }
 
     fn states(&self, out: &mut Vec<BodyState>) {

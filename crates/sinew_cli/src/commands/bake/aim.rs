@@ -4,7 +4,7 @@ use super::hit::HitArg;
 use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
 use crate::report::table::shown;
-use sinew::anim::{RigAnalysis, Role, Side};
+use sinew::anim::{Rig, RigAnalysis, Role, Side};
 use sinew::ragdoll::settings::{instead, role_named};
 use sinew::ragdoll::{BakeHit, CharacterDef, RagdollBodyDef};
 
@@ -21,7 +21,8 @@ pub fn aim(
     let bodies = &character.ragdoll.bodies;
     let role = role_named(&hit.bone).ok();
     let named = || character.body_named(&hit.bone).or_else(|| body_with(role?, bodies));
-    let body = match named().or_else(|| carrier(role?, &file.analysis, bodies)) {
+    let by_joint = || bearer(&hit.bone, &character.rig, bodies);
+    let body = match named().or_else(|| carrier(role?, &file.analysis, bodies)).or_else(by_joint) {
         Some(body) => body,
         None => {
             let Some(body) = role.and_then(|role| nearest(role, bodies)) else {
@@ -55,6 +56,17 @@ fn body_with(role: Role, bodies: &[RagdollBodyDef]) -> Option<usize> {
 fn carrier(role: Role, analysis: &RigAnalysis, bodies: &[RagdollBodyDef]) -> Option<usize> {
     let joint = analysis.joint_with(role)?;
     bodies.iter().position(|body| body.joint == joint || body.merged.contains(&joint))
+}
+
+/// Returns the body that moves a joint of that name, or the first one above the joint in the rig, else below.
+fn bearer(name: &str, rig: &Rig, bodies: &[RagdollBodyDef]) -> Option<usize> {
+    let own =
+        |joint: usize| bodies.iter().position(|body| body.joint == joint || body.merged.contains(&joint));
+    let line = |joint: usize| core::iter::successors(Some(joint), |&at| rig.joints[at].parent);
+    let joint = rig.joints.iter().position(|joint| joint.name == name)?;
+    line(joint)
+        .find_map(own)
+        .or_else(|| bodies.iter().position(|body| line(body.joint).any(|at| at == joint)))
 }
 
 /// Returns the nearest body along the spine (of two equally near ones the lower); for a limb, the next part toward the

@@ -296,7 +296,7 @@ impl Bake {
             notes.extend(file.analysis.notes.iter().filter(is_for_bake).cloned());
             let loose = file.document.warnings.iter().filter(|note| note.ends_with("the nearest skin"));
             notes.extend(loose.cloned());
-            let doubt = settings.doubt(&ragdoll);
+            let doubt = settings.doubt(&file, &ragdoll);
             notes.extend(doubt.iter().map(|doubt| doubt.reason.clone()));
             return Ok(Cast { file, ragdoll, garments, doubt, notes });
         };

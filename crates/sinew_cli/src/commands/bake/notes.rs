@@ -68,7 +68,6 @@ fn late(input: &BakeInput<'_>) -> Option<String> {
 
 /// Returns a note if there is no ground near below the character.
 fn ground(input: &BakeInput<'_>, file: Option<&str>) -> Option<String> {
-    let file = file?;
     let mut world = World::new(WorldDef::default());
     for body in input.bodies {
         world.add_body(body);
@@ -78,7 +77,8 @@ fn ground(input: &BakeInput<'_>, file: Option<&str>) -> Option<String> {
     let ray = Ray { origin: soles + Vec3::Y * (0.5 * height), direction: Vec3::Y * -DEPTH };
     let down = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&ray);
     let hit = down.filter(|hit| hit.start.is_none() && soles.y - hit.point.y > GAP)?;
-    Some(format!("the ground of {file} is {:.2} m below the character", soles.y - hit.point.y))
+    let ground = file.map_or("the floor".to_owned(), |file| format!("the ground of {file}"));
+    Some(format!("{ground} is {:.2} m below the character: it falls once it is limp", soles.y - hit.point.y))
 }
 
 /// Returns the reason why a fallen character is not up at the end.
@@ -104,7 +104,7 @@ fn stays_down(
     } else if let GetsUpBy::Nothing(why) | GetsUpBy::Unfit(why) = gets_up_by {
         why.clone()
     } else if has(|event| matches!(event, CharacterEvent::GettingUp { .. })) {
-        format!("it is on its way up at the end, at {end} s: --seconds gives it more time")
+        return Some(format!("it is still getting up at the end, at {end} s: --seconds gives it more time"));
     } else if has(|event| matches!(event, CharacterEvent::Settled { .. } | CharacterEvent::Preparing { .. }))
     {
         format!("it lies still, but the end comes first, at {end} s: --seconds gives it more time")

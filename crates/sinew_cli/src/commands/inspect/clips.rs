@@ -88,18 +88,19 @@ fn way(motion: &Motion, clip: &Clip, analysis: &RigAnalysis) -> Option<Way> {
     way.shift.is_finite().then_some(way)
 }
 
-/// Returns the clips as a table.
+/// Returns the clips as a table, numbered as `--clip` and `--get-up` count them.
 pub fn clip_table(facts: &[ClipFacts<'_>]) -> Table {
     let mut table =
-        Table::titled(&["name", "seconds", "channels", "keys", "built", "error (°, units)", "moves"]);
-    for ClipFacts { clip, keys, built, way, .. } in facts {
+        Table::titled(&["#", "name", "seconds", "channels", "keys", "built", "error (°, units)", "moves"]);
+    for (number, ClipFacts { clip, keys, built, way, .. }) in facts.iter().enumerate() {
         let (size, error) = built.as_ref().map_or(("-".to_owned(), "-".to_owned()), |built| {
             let bound = built.error_bound();
             (kib(built.bytes()), format!("{:.3}, {:.0e}", bound.rotation.to_degrees(), bound.translation))
         });
         let way = way.as_ref().map_or(String::new(), Way::to_text);
         let (seconds, channels) = (format!("{:.2}", clip.duration), clip.channels.len().to_string());
-        table.row([shown(&clip.name), seconds, channels, keys.to_string(), size, error, way]);
+        let (number, keys) = (number.to_string(), keys.to_string());
+        table.row([number, shown(&clip.name), seconds, channels, keys, size, error, way]);
     }
     table
 }

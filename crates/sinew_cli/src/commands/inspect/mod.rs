@@ -40,11 +40,12 @@ pub struct Inspect {
 impl Inspect {
     /// Reads the file and describes its content.
     pub fn run(&self) -> Result<Report> {
-        let motion = Motion::load_in(&self.file, self.unit)?;
+        let mut motion = Motion::load_in(&self.file, self.unit)?;
         let (mut links, mut worn, mut trouble) = (Vec::new(), Vec::new(), Vec::new());
         match self.settings() {
             Ok(settings) => {
                 let mut tell = |failure: Failure| trouble.push(failure.to_string());
+                self.correct(&mut motion, settings.as_ref()).unwrap_or_else(&mut tell);
                 self.links(&motion, settings.as_ref()).map_or_else(&mut tell, |found| links = found);
                 self.worn(&motion, settings.as_ref()).map_or_else(&mut tell, |found| worn = found);
             }
@@ -62,6 +63,15 @@ impl Inspect {
         }
         let read = read_bytes(&path).and_then(|bytes| read_ragdoll_settings(&bytes));
         Ok(Some(read.map_err(|error| error.with_file(path.display().to_string()))?))
+    }
+
+    /// Applies the settings to roles and unit, as `ragdoll build` does; `--unit` overrides.
+    fn correct(&self, motion: &mut Motion, settings: Option<&Settings>) -> Result<()> {
+        let (Some(settings), Some(analysis)) = (settings, &motion.analysis) else { return Ok(()) };
+        let analysis =
+            analyze_with(&motion.file.rig, analysis, settings).map_err(|error| self.failure(error))?;
+        motion.analysis = Some(self.unit.map_or(analysis.clone(), |unit| analysis.with_unit_scale(unit)));
+        Ok(())
     }
 
     /// Converts an error in the settings.
