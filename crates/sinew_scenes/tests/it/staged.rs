@@ -3,7 +3,7 @@
 use sinew::math::{Reader, Vec3, Writer};
 use sinew::ragdoll::State;
 use sinew_scenes::fallen::fall_of_character;
-use sinew_scenes::scenes::{Act, Instance};
+use sinew_scenes::scenes::{Act, Instance, Metric};
 use sinew_scenes::staged::{Sample, staged};
 
 /// Every sample is pushed, falls, gets up, walks on, and begins again at the start, twice.
@@ -78,7 +78,7 @@ fn a_character_carries_out_instructions() {
         // An instruction that does not exist changes nothing.
         stage.act(Act::Play(9999));
         run(&mut stage, 1);
-        assert!(stage.metrics().iter().filter(|it| it.name == "nan").all(|it| it.is_met()));
+        assert!(stage.metrics().iter().filter(|it| it.name == "nan").all(Metric::is_met));
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{App, style};
 use egui::{Align2, Color32, FontId, Grid, RichText};
 
-/// Hints shown at the start.
+/// Hints shown at the start, in a small picture only the first.
 const HINTS: [&str; 3] = [
     "Click to push him; drag a body to pull it, the background to look around",
     "Press B to throw a ball, Space to pause, R to start again",
@@ -42,9 +42,10 @@ const KEYS: [(&str, &str); 24] = [
 pub(super) fn overlay(app: &App, ui: &mut egui::Ui) {
     let area = app.area;
     let font = FontId::proportional(14.0);
-    if app.shows_hints && area.width() > super::ROOMY {
+    if app.shows_hints {
+        let hints = if area.width() > super::ROOMY { &HINTS[..] } else { &HINTS[..1] };
         let mut top = area.left_top() + egui::vec2(16.0, 16.0);
-        for line in HINTS {
+        for line in hints {
             top.y = plate(ui, top, Align2::LEFT_TOP, line, &font).bottom() + 12.0;
         }
     }

@@ -6,15 +6,18 @@ mod browser;
 mod editor;
 mod help;
 mod inspector;
+mod keys;
 mod mouse;
 mod names;
 mod orders;
 mod probe;
+mod run_all;
 mod solver;
 mod style;
 mod timeline;
 mod tour;
 mod transport;
+mod undo;
 mod walk;
 
 use crate::chase::Chase;
@@ -25,7 +28,7 @@ use crate::stage::Stage;
 use crate::view::{self, Orbit};
 use actor::Pressed;
 use bench::Bench;
-use egui::{Key, Rect, Vec2};
+use egui::{Rect, Vec2};
 use mouse::Mouse;
 pub use orders::Order;
 use probe::Probe;
@@ -80,7 +83,7 @@ const SETTLING: u8 = 4;
 
 /// Least width of a window in which both panels are beside the picture, points; narrower windows fold them.
 const WIDE: f32 = 860.0;
-/// Least width of the picture that leaves room for hints, points.
+/// Least width of the picture that leaves room for all hints, points.
 const ROOMY: f32 = 600.0;
 
 /// A panel beside the picture.
@@ -607,129 +610,6 @@ impl App {
         }
     }
 
-    fn keys(&mut self, ui: &egui::Ui) {
-        let ctx = ui.ctx();
-        if ctx.egui_wants_keyboard_input() {
-            return;
-        }
-        let pressed = |key: Key| ctx.input(|input| input.key_pressed(key));
-        let typed = |text: &str| {
-            ctx.input(|input| {
-                input.events.iter().any(|event| matches!(event, egui::Event::Text(it) if it == text))
-            })
-        };
-        if pressed(Key::Space) {
-            self.running = !self.running;
-        }
-        if pressed(Key::N) || typed(".") {
-            self.running = false;
-            self.step();
-        }
-        if pressed(Key::R) {
-            self.restart();
-        }
-        self.bench_keys(ctx);
-        if pressed(Key::F) {
-            self.frame();
-        }
-        if pressed(Key::G) {
-            walk::toggle(self);
-        }
-        if pressed(Key::C) {
-            self.follow(self.follows.is_none());
-            self.tell(if self.follows.is_some() { "the camera goes along" } else { "the camera stays" });
-        }
-        if pressed(Key::B) {
-            let at = ui.input(|input| input.pointer.hover_pos());
-            mouse::throw(self, at.filter(|at| self.area.contains(*at)));
-        }
-        if pressed(Key::P) || pressed(Key::F12) {
-            self.wants_screenshot = true;
-        }
-        if pressed(Key::X) {
-            self.probe.is_on = !self.probe.is_on;
-        }
-        if typed("?") || pressed(Key::F1) {
-            self.shows_help = !self.shows_help;
-        }
-        if typed("/") {
-            self.focuses_search = true;
-        }
-        if pressed(Key::Escape) {
-            self.search.clear();
-            self.shows_help = false;
-            self.shows_hints = false;
-        }
-        use Key::{H, Num0, Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9};
-        let keys = [Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9, Num0, H];
-        for (key, layer) in keys.into_iter().zip(Layer::ALL) {
-            if pressed(key) {
-                self.toggle(layer);
-            }
-        }
-        self.fly(ctx);
-    }
-
-    /// Handles keys that change a ragdoll, or seek in a recording.
-    fn bench_keys(&mut self, ctx: &egui::Context) {
-        let pressed = |key: Key| ctx.input(|input| input.key_pressed(key));
-        // Ctrl may be released by the end of a slow frame, so this uses the event's own modifiers.
-        let is_save = |event: &egui::Event| matches!(event, egui::Event::Key { key: Key::S, pressed: true, modifiers, .. } if modifiers.command);
-        let saves = |input: &egui::InputState| input.events.iter().any(is_save);
-        if ctx.input(saves) {
-            bench::save(self);
-        }
-        let reverts = |event: &egui::Event| match event {
-            egui::Event::Key { key: Key::Z, pressed: true, modifiers, .. } if modifiers.command => {
-                Some(modifiers.shift)
-            }
-            egui::Event::Key { key: Key::Y, pressed: true, modifiers, .. } if modifiers.command => Some(true),
-            _ => None,
-        };
-        if let Some(redo) = ctx.input(|input| input.events.iter().find_map(reverts)) {
-            self.undo(redo);
-        }
-        for (key, by) in [(Key::OpenBracket, -1), (Key::CloseBracket, 1)] {
-            if pressed(key) {
-                bench::choose_next(self, by);
-            }
-        }
-        for (key, sign) in [(Key::Minus, -1.0), (Key::Equals, 1.0), (Key::Plus, 1.0)] {
-            if pressed(key) {
-                bench::widen(self, sign);
-            }
-        }
-        let at = self.session.world().step_count();
-        for (key, step) in [
-            (Key::ArrowLeft, at.saturating_sub(1)),
-            (Key::ArrowRight, at + 1),
-            (Key::Home, 0),
-            (Key::End, u64::MAX),
-        ] {
-            if pressed(key) {
-                self.seek(step);
-            }
-        }
-    }
-
-    /// Moves the camera while keys are held.
-    fn fly(&mut self, ctx: &egui::Context) {
-        let (seconds, fast) = ctx.input(|input| (input.stable_dt.min(0.1), input.modifiers.shift));
-        if ctx.input(|input| input.modifiers.command) {
-            return;
-        }
-        let held = |key: Key| ctx.input(|input| f32::from(u8::from(input.key_down(key))));
-        if self.leads.is_some() {
-            return walk::lead(self, held(Key::D) - held(Key::A), held(Key::W) - held(Key::S), fast);
-        }
-        let way =
-            Vec3::new(held(Key::D) - held(Key::A), held(Key::E) - held(Key::Q), held(Key::W) - held(Key::S));
-        if way != Vec3::ZERO {
-            self.orbit.shift(way * (seconds * if fast { 2.4 } else { 0.8 }));
-            ctx.request_repaint();
-        }
-    }
-
     /// Gives an instruction to the character of the scene.
     pub fn act(&mut self, act: Act) {
         if self.session.instance().directed().is_none() || !self.session.is_live() {
@@ -753,86 +633,6 @@ impl App {
             Pressed::Walk => walk::toggle(self),
             Pressed::Act(act) => self.act(act),
         }
-    }
-
-    /// Runs all scenes to their ends, one after the other, or stops; results stay.
-    fn tour(&mut self) {
-        if self.tour.runs {
-            self.tour.runs = false;
-            (self.goal, self.running) = (None, false);
-            return;
-        }
-        self.tour = Tour::begun();
-        self.open_next();
-    }
-
-    /// Opens the next scene of the tour; after the last one the tour ends.
-    fn open_next(&mut self) {
-        let Some(scene) = self.tour.next() else {
-            self.tour.runs = false;
-            return self.tell(self.tour.told());
-        };
-        if let Ok(subject) = Subject::scene(scene.name, &[]) {
-            self.open(subject);
-            (self.goal, self.running) = (Some(u64::from(scene.steps)), true);
-        }
-    }
-
-    /// Notes the result of a scene that has ended, and opens the next one.
-    fn go_on_touring(&mut self) {
-        if !self.tour.runs || self.goal.is_some() {
-            return;
-        }
-        let next = self.tour.next().map(|scene| scene.name);
-        if next != Some(self.session.subject().title().as_str()) {
-            self.tour.runs = false;
-            return;
-        }
-        let is_met = self.session.metrics().iter().all(|metric| metric.is_met());
-        self.tour.note(is_met);
-        self.open_next();
-    }
-
-    /// Undoes the last operation, edit or change of settings, or does it again.
-    pub fn undo(&mut self, redo: bool) {
-        let name = if redo { "redo" } else { "undo" };
-        match self.session.undo(redo) {
-            Err(line) => self.tell(line),
-            Ok(true) => {
-                let chosen = self.bench.chosen;
-                (self.starts, self.mouse) = (self.starts + 1, Mouse::default());
-                bench::choose(self, chosen);
-                self.tell(if redo { "done again" } else { "undone" });
-            }
-            Ok(false) => {
-                let list = if redo { &mut self.future } else { &mut self.past };
-                let Some(subject) = list.pop() else { return self.tell(format!("nothing to {name}")) };
-                let pinned = self.pinned.take();
-                let (now, [mut past, mut future]) = (
-                    self.session.subject().clone(),
-                    [core::mem::take(&mut self.past), core::mem::take(&mut self.future)],
-                );
-                if redo {
-                    past.push(now)
-                } else {
-                    future.push(now)
-                }
-                self.open(subject);
-                (self.past, self.future, self.pinned) = (past, future, pinned);
-            }
-        }
-    }
-
-    /// Opens the scene with other settings; the present ones can be restored.
-    fn open_with_settings(&mut self, subject: Subject) {
-        let mut past = core::mem::take(&mut self.past);
-        past.push(self.session.subject().clone());
-        let pinned = self.pinned.take();
-        self.open(subject);
-        if let Some(subject) = &pinned {
-            self.session.set_twin(subject);
-        }
-        (self.past, self.pinned) = (past, pinned);
     }
 
     /// Switches a layer on or off.
