@@ -61,7 +61,9 @@ class BoneSettings(bpy.types.PropertyGroup):
     friction: FloatProperty(name="Friction", description="Torque with which the joint resists, N·m", min=0, update=_edited)
 
 
-class ArmatureSettings(bpy.types.PropertyGroup):
+class Ragdoll:
+    """Properties of a ragdoll: the definition, and what the add-on has to restore when it is removed."""
+
     definition: StringProperty()
     fitted: StringProperty()
     # World matrix of the armature at the time of the build: 16 numbers.
@@ -74,6 +76,9 @@ class ArmatureSettings(bpy.types.PropertyGroup):
     # Name of the track that took the user's Action below a strip.
     own_track: StringProperty()
     made_action: PointerProperty(type=bpy.types.Action)
+
+
+class ArmatureSettings(Ragdoll, bpy.types.PropertyGroup):
     height: FloatProperty(name="Height", description="Height of the character in metres; 0: read from the armature", min=0, soft_max=4)
     mass: FloatProperty(name="Mass", description="Mass of the character in kg; 0: by its height and volume", min=0, soft_max=300)
     springs: BoolProperty(name="Springs", description="What is called hair, ear, tail, skirt or ribbon swings")
@@ -84,20 +89,10 @@ class ArmatureSettings(bpy.types.PropertyGroup):
     finding: IntProperty()
 
 
-class Override(bpy.types.PropertyGroup):
+class Override(Ragdoll, bpy.types.PropertyGroup):
     """The ragdoll of a library override, see `overrides`."""
 
     armature: PointerProperty(type=bpy.types.Object)
-    definition: StringProperty()
-    fitted: StringProperty()
-    place: StringProperty()
-    report: StringProperty()
-    keyed: StringProperty()
-    own_pose: StringProperty()
-    own_action: PointerProperty(type=bpy.types.Action)
-    # Name of the track that took the user's Action below a strip.
-    own_track: StringProperty()
-    made_action: PointerProperty(type=bpy.types.Action)
 
 
 class BodySettings(bpy.types.PropertyGroup):
@@ -110,7 +105,7 @@ class HitSettings(bpy.types.PropertyGroup):
     armature: PointerProperty(type=bpy.types.Object, name="Armature", poll=lambda self, ob: ob.type == "ARMATURE")
     bone: StringProperty(name="Bone")
     frame: IntProperty(name="Frame", default=45)
-    impulse: FloatProperty(name="Impulse", description="N·s: a shove is 50 to 100, a punch 30, a car 1,000 and more; at most 30 m/s times the character's mass, and 1,500 m/s times the bone's", default=100, min=0)
+    impulse: FloatProperty(name="Impulse", description="N·s: a shove is 50 to 100, a punch 30, a car 1,000 and more; at most 30 m/s times the character's mass, and 4,000 m/s times the bone's", default=100, min=0)
 
 
 class SceneSettings(bpy.types.PropertyGroup):

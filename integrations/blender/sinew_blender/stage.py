@@ -9,8 +9,8 @@ from .skeleton import TO_Y, SinewError
 
 # Largest number of triangles of one collider.
 MOST_TRIANGLES = 500_000
-# Largest speeds that a hit gives to a whole character and to the struck body, m/s: harder hits can have no effect.
-MOST_SPEED, MOST_BODY_SPEED = 30.0, 1500.0
+# Largest speeds that a hit gives to a whole character and to the struck body, m/s. No body of a simulation is faster than the second.
+MOST_SPEED, MOST_BODY_SPEED = 30.0, 4000.0
 # Smallest change of a matrix of a moving object, in Blender's unit.
 MOVES = 1e-6
 

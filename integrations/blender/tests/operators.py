@@ -92,7 +92,7 @@ def a_hit_is_limited_to_what_a_body_takes():
     settings(by="HITS", use_return=False)
     own = posed(arm, names, 53, 53)[0]
     hand, chest = "Skeleton_arm_joint_L__2_", "torso_joint_3"
-    for bone, most in ((hand, 1500.0 * masses[hand]), (chest, 30.0 * sum(masses.values()))):
+    for bone, most in ((hand, 4000.0 * masses[hand]), (chest, 30.0 * sum(masses.values()))):
         bpy.context.scene.frame_set(50)
         arm.data.bones.active = arm.data.bones[bone]
         bpy.ops.sinew.add_hit(impulse=20000)

@@ -9,7 +9,7 @@ use crate::solver::body::SolverBody;
 use crate::solver::contact_rows::ManifoldRows;
 use crate::solver::motion::KineticEnergy;
 use crate::solver::motion::momentum::{Momentum, RigidMotion, center_of_mass};
-use crate::solver::pass::Pass;
+use crate::solver::pass::{Coupling, Pass};
 use crate::solver::tuning::{DIVERGED_SPEED, DIVERGED_SPIN, ENERGY_SLACK, MAX_INNER_TURN, TORN};
 use crate::spatial::{Vec6, ZERO6, angular, difference, linear};
 use sinew_math::dispatch;
@@ -97,8 +97,9 @@ impl IslandSolver {
     }
 
     /// Falls back to a rigid motion if the solution is invalid: not finite, beyond all limits, or leaving joints open by `torn`, m or rad.
-    /// This happens with rows that contradict each other (a body dragged into the floor, conflicting joints). The island then moves as one
-    /// rigid piece for this pass, with its momentum after the forces: no joint opens, and no energy is added.
+    /// This happens with rows that contradict each other (a body dragged into the floor, conflicting joints), and where a blow gives a light
+    /// body a spin whose tangent leads far beyond its joint. The island then moves as one rigid piece for this pass, with its momentum after
+    /// the forces: no joint opens, and no energy is added.
     pub(in crate::solver) fn fall_back_to_rigid(&mut self, torn: f32) {
         let moving = self.links.len();
         let most = [DIVERGED_SPEED * self.max_speed, DIVERGED_SPIN];
@@ -107,7 +108,7 @@ impl IslandSolver {
         if sane && torn < TORN {
             return;
         }
-        let rigid = self.meant_as_one();
+        let rigid = self.slide_as_one();
         for (body, v) in self.bodies.iter().zip(&mut self.velocities[..moving]) {
             *v = rigid.at(body.pose.translation);
         }
@@ -126,6 +127,26 @@ impl IslandSolver {
         } else {
             RigidMotion::with_momentum(&self.bodies, &self.momentum_start)
         }
+    }
+
+    /// [`Self::meant_as_one`], but an island that only touches fixed bodies slides along them: it loses the part of its velocity that leads
+    /// into them, and its spin.
+    fn slide_as_one(&self) -> RigidMotion {
+        let moving = self.links.len();
+        let is_jointed =
+            self.joints.iter().any(|joint| [joint.a, joint.b].iter().any(|&end| end as usize >= moving));
+        if !self.is_held() || is_jointed || self.coupling != Coupling::Response {
+            return self.meant_as_one();
+        }
+        let (mass, center) = center_of_mass(&self.bodies[..moving]);
+        let mut linear = self.momentum_start.linear / mass;
+        // Twice, for a floor and a wall that are not at right angles.
+        for rows in self.manifolds.iter().chain(&self.manifolds) {
+            if let Some(outward) = rows.outward(moving) {
+                linear += outward * max(-linear.dot(outward), 0.0);
+            }
+        }
+        RigidMotion { center, linear, angular: Vec3::ZERO }
     }
 
     /// True if the island touches or is jointed to a fixed body.

@@ -235,6 +235,15 @@ impl ManifoldRows {
         }
     }
 
+    /// Unit normal out of the fixed body; `None` between two moving ones, whose local indices are below `moving`.
+    pub fn outward(&self, moving: usize) -> Option<Vec3> {
+        match [self.a, self.b].map(|body| (body as usize) < moving) {
+            [true, true] => None,
+            [_, true] => Some(self.normal),
+            _ => Some(-self.normal),
+        }
+    }
+
     fn pair(&self) -> Pair {
         Pair { a: self.a, b: self.b }
     }
