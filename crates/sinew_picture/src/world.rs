@@ -6,9 +6,9 @@ use sinew::math::{Transform, Vec3, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::particles::{ParticleGroup, SpringDef};
 use sinew::physics::{
-    BodyId, BodyKind, DebugDraw, DrawKind, JointDef, JointId, JointKind, Shape, SixDof, World,
+    BodyId, BodyKind, DebugDraw, DrawKind, GroupId, JointDef, JointId, JointKind, Shape, SixDof, World,
 };
-use std::collections::{HashMap, HashSet};
+use std::collections::{HashMap, HashSet, VecDeque};
 
 /// Part of a world shown in a picture: thin and small things are drawn thick enough to be visible.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,12 +157,18 @@ impl Canvas for Scene {
 
 /// Paints the world's bodies, particles, springs, joints and the drawings of its objects.
 pub fn paint(world: &World, frame: &Frame<'_>, canvas: &mut dyn Canvas) {
-    paint_all_but(world, &[], frame, canvas);
+    paint_all_but(world, &[], &[], frame, canvas);
 }
 
-/// Paints like [`paint`], without the bodies `shown` by other means and without their joints: those of a character drawn by its
-/// skin.
-pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame<'_>, canvas: &mut dyn Canvas) {
+/// Paints like [`paint`], without the bodies `shown` by other means and their joints, and without particles that are `worn`:
+/// those of a character drawn by its skin.
+pub fn paint_all_but(
+    world: &World,
+    shown: &[BodyId],
+    worn: &[GroupId],
+    frame: &Frame<'_>,
+    canvas: &mut dyn Canvas,
+) {
     let shown: HashSet<BodyId> = shown.iter().copied().collect();
     let colors: HashMap<BodyId, [f32; 3]> = frame.colors.iter().copied().collect();
     for (number, id) in world.body_ids().enumerate() {
@@ -179,7 +185,7 @@ pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame<'_>, canvas:
             paint_body(world, id, color.ok_or(number), frame, canvas);
         }
     }
-    for id in world.group_ids() {
+    for id in world.group_ids().filter(|id| !worn.contains(id)) {
         paint_group(world.particles(id), frame, canvas);
     }
     let is_shown = |id: &JointId| {
@@ -273,6 +279,9 @@ fn round_length(length: f32) -> f32 {
 
 fn paint_group(group: &ParticleGroup, frame: &Frame<'_>, canvas: &mut dyn Canvas) {
     let positions = group.positions();
+    if let Some(model) = surface(group) {
+        return canvas.model(model);
+    }
     if positions.len() <= MOST_SOLID {
         for (&position, &radius) in positions.iter().zip(group.radii()) {
             let alone = group.springs().is_empty();
@@ -284,6 +293,80 @@ fn paint_group(group: &ParticleGroup, frame: &Frame<'_>, canvas: &mut dyn Canvas
     let ends = |spring: &SpringDef| [spring.a, spring.b].map(|i| positions[i as usize]);
     let springs: Vec<_> = group.springs().iter().map(ends).collect();
     thin(&springs, SPRING, frame, canvas);
+}
+
+/// Returns the surface of cloth, or of the skins of soft bodies; `None` for ropes and nets, which have none.
+fn surface(group: &ParticleGroup) -> Option<Model> {
+    let of_volumes = group.volumes().iter().flat_map(|volume| &volume.triangles);
+    let triangles: Vec<[u32; 3]> = match group.faces() {
+        [] => of_volumes.copied().collect(),
+        faces => faces.to_vec(),
+    };
+    if triangles.is_empty() {
+        return None;
+    }
+    let positions = group.positions().to_vec();
+    let mut normals = vec![Vec3::ZERO; positions.len()];
+    for triangle in &triangles {
+        let [a, b, c] = triangle.map(|i| positions[i as usize]);
+        let normal = (b - a).cross(c - a);
+        triangle.iter().for_each(|&i| normals[i as usize] += normal);
+    }
+    let indices = triangles.into_iter().flatten().collect();
+    Some(Model { positions, normals, indices, material: RenderMaterial::new(PARTICLE), ..Model::default() })
+}
+
+/// Largest number of bodies with drawn trails; more would be indistinguishable.
+const MOST_TRAILS: usize = 4;
+/// Length of a trail, steps.
+const TRAIL_STEPS: usize = 600;
+
+/// Paths of the centres of mass of a few bodies.
+#[derive(Clone, Debug, Default)]
+pub struct Trails {
+    list: Vec<Trail>,
+}
+
+#[derive(Clone, Debug)]
+struct Trail {
+    body: BodyId,
+    color: [f32; 3],
+    points: VecDeque<Vec3>,
+}
+
+impl Trails {
+    /// Begins the trails of a world's moving bodies; empty if there are more than four.
+    pub fn of(world: &World) -> Self {
+        let bodies = world.body_ids().enumerate();
+        let moving: Vec<_> = bodies.filter(|&(_, id)| world.kind(id) != BodyKind::Static).collect();
+        if moving.len() > MOST_TRAILS {
+            return Self::default();
+        }
+        let start = |(number, body)| Trail {
+            body,
+            color: body_color(number),
+            points: VecDeque::from([world.center_of_mass(body)]),
+        };
+        Self { list: moving.into_iter().map(start).collect() }
+    }
+
+    /// Extends the trails after a step.
+    pub fn go_on(&mut self, world: &World) {
+        for trail in self.list.iter_mut().filter(|trail| world.contains(trail.body)) {
+            if trail.points.len() > TRAIL_STEPS {
+                trail.points.pop_front();
+            }
+            trail.points.push_back(world.center_of_mass(trail.body));
+        }
+    }
+
+    /// Returns the lines of the trails.
+    pub fn lines(&self) -> impl Iterator<Item = Line> {
+        self.list.iter().flat_map(|trail| {
+            let ends = trail.points.iter().zip(trail.points.iter().skip(1));
+            ends.map(|(&from, &to)| Line { from, to, color: trail.color, depth: LineDepth::Tested })
+        })
+    }
 }
 
 /// Lines of [`World::draw`], or of other drawings, that no surface replaces.

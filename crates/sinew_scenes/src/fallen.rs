@@ -1,6 +1,7 @@
 //! A limp character of a file falls on a floor, drawn by its skin, or by its bodies if it has none.
 
 use crate::framework::actors::Figure;
+use crate::framework::acts::{Act, Directed};
 use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -8,10 +9,10 @@ use crate::parts::{GRAVITY, floor};
 use sinew::anim::{Rig, RigAnalysis, local_to_model};
 use sinew::math::{Affine, ReadError, Reader, Rotation, Transform, Vec3, Writer};
 use sinew::physics::boxes::Aabb;
-use sinew::physics::{BodyId, World, WorldDef};
+use sinew::physics::{BodyId, GroupId, World, WorldDef};
 use sinew::ragdoll::{
     AfterSettling, BodySettings, BodyState, BuildError, BuildOptions, BuildReport, Character, CharacterDef,
-    QualityMeter, Ragdoll, RagdollDef, build,
+    Opening, QualityMeter, Ragdoll, RagdollDef, build,
 };
 use std::sync::Arc;
 
@@ -32,16 +33,21 @@ pub fn fall_of(rig: Rig, analysis: &RigAnalysis) -> Result<(Instance, BuildRepor
 
 /// [`fall_of`] with an existing ragdoll of that rig. `bind_model` is `RigAnalysis::bind_model`.
 pub fn fall_with(rig: Rig, ragdoll: RagdollDef, bind_model: &[Affine]) -> Instance {
-    let mut def = CharacterDef::new(rig, ragdoll, bind_model);
+    fall_of_character(CharacterDef::new(rig, ragdoll, bind_model))
+}
+
+/// A character with motions, which falls limp from its rest pose and stays down until the user instructs it.
+pub fn fall_of_character(mut def: CharacterDef) -> Instance {
     def.after_settling = AfterSettling::StayDown;
+    def.set_opening(Opening::Rest);
     let def = Arc::new(def);
     let mut world = floor_alone();
-    let mut character = Character::new(def.clone(), start(&def.ragdoll), 0.0);
+    let mut character = Character::spawn(&mut world, &def, start(&def.ragdoll));
     character.go_limp(&mut world);
     let mut meter = QualityMeter::new(&def.ragdoll, SECONDS);
     meter.went_limp();
     meter.before_step(&world);
-    let mut fallen = Fallen { def, character, meter, model: Vec::new() };
+    let mut fallen = Fallen { def, character, meter, directed: Directed::default(), model: Vec::new() };
     fallen.show();
     Instance::new(world, fallen)
 }
@@ -73,6 +79,16 @@ fn start(def: &RagdollDef) -> Transform {
     Transform::new(Vec3::Y * (HEIGHT * def.height), Rotation::from_axis_angle(Vec3::X, LEAN))
 }
 
+/// Half of the box that a camera keeps in the picture, in heights of the character: enough for a lying body and for
+/// raised arms.
+pub(crate) const ROOM: Vec3 = Vec3::new(0.5, 0.56, 0.5);
+
+/// Returns the centre of the bounds of all joints, world space, metres.
+pub(crate) fn middle(model: &[Affine]) -> Vec3 {
+    let points = model.iter().map(|joint| Aabb { min: joint.translation, max: joint.translation });
+    points.reduce(|a, b| a.merge(&b)).unwrap_or_default().center()
+}
+
 /// Length of a fall for which the meter reserves memory from the start, seconds.
 const SECONDS: f32 = 10.0;
 
@@ -81,6 +97,7 @@ struct Fallen {
     def: Arc<CharacterDef>,
     character: Character,
     meter: QualityMeter,
+    directed: Directed,
     /// World from joint.
     model: Vec<Affine>,
 }
@@ -98,19 +115,22 @@ impl Script for Fallen {
     }
 
     fn after_step(&mut self, world: &mut World) {
-        if let Some(ragdoll) = self.character.ragdoll() {
+        if let Some(ragdoll) = self.character.ragdoll().filter(|_| !self.directed.is_directed) {
             self.meter.after_step(world, ragdoll);
         }
         self.character.update(world);
+        self.directed.go_on(&mut self.character);
         self.show();
     }
 
     fn save(&self, out: &mut Writer) {
         self.character.save(out);
+        self.directed.save(out);
     }
 
     fn load(&mut self, bytes: &mut Reader<'_>) -> Result<(), ReadError> {
         self.character.load(bytes)?;
+        self.directed = Directed::load(bytes)?;
         self.show();
         Ok(())
     }
@@ -133,6 +153,14 @@ impl Script for Fallen {
     /// View from the side, with room in the direction of the fall, +z.
     fn camera_hint(&self) -> CameraHint {
         let height = self.def.ragdoll.height;
+        if self.directed.is_directed {
+            let bounds = Aabb::around(middle(&self.model), ROOM * height);
+            return CameraHint {
+                direction: Vec3::new(1.0, 0.35, 0.5),
+                bounds: Some(bounds),
+                trails: Trails::None,
+            };
+        }
         let bounds =
             Aabb { min: Vec3::new(-0.4, 0.0, -0.3) * height, max: Vec3::new(0.4, 1.4, 1.3) * height };
         CameraHint { direction: Vec3::new(1.0, 0.35, 0.5), bounds: Some(bounds), trails: Trails::None }
@@ -143,6 +171,32 @@ impl Script for Fallen {
     }
 
     fn bodies_of_figures(&self) -> Vec<BodyId> {
-        self.character.ragdoll().map(|ragdoll| ragdoll.bodies.clone()).unwrap_or_default()
+        self.character.bodies().to_vec()
+    }
+
+    fn garments_of_figures(&self) -> &[GroupId] {
+        self.character.garments()
+    }
+
+    fn strike(&mut self, world: &mut World, body: BodyId, impulse: Vec3, _: Vec3) {
+        if let Some(body) = self.character.body_index(body) {
+            self.character.hit(world, body, impulse);
+        }
+    }
+
+    fn steer(&mut self, way: Vec3) {
+        self.directed.steer(way, &mut self.character);
+    }
+
+    fn steered(&self) -> Option<Vec3> {
+        Some(self.character.world_from_character().translation)
+    }
+
+    fn act(&mut self, world: &mut World, act: Act) {
+        self.directed.act(act, &mut self.character, world);
+    }
+
+    fn directed(&self) -> Option<&Character> {
+        Some(&self.character)
     }
 }

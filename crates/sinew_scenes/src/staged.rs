@@ -5,7 +5,9 @@
 
 use crate::cabin::Site;
 use crate::dressed::{CAPE, dressed};
+use crate::fallen::{ROOM, middle};
 use crate::framework::actors::Figure;
+use crate::framework::acts::{Act, Directed};
 use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::Metric;
@@ -13,7 +15,7 @@ use crate::maned::{HAIR, maned};
 use sinew::anim::local_to_model;
 use sinew::math::{Affine, ReadError, Reader, Transform, Vec3, Writer};
 use sinew::physics::boxes::Aabb;
-use sinew::physics::{BodyId, BodyKind, World, WorldDef};
+use sinew::physics::{BodyId, BodyKind, GroupId, World, WorldDef};
 use sinew::ragdoll::{Character, CharacterDef, State};
 use std::sync::Arc;
 
@@ -34,9 +36,6 @@ const SHOVE: f32 = 1.45;
 /// Times after which the run begins again, seconds: with the character on its feet, and down without getting up.
 const WALKS_ON: f32 = 4.0;
 const STAYS_DOWN: f32 = 12.0;
-/// Half of the box that a camera keeps in the picture, in heights of the character: enough for a lying body and for
-/// raised arms.
-const ROOM: Vec3 = Vec3::new(0.5, 0.56, 0.5);
 
 /// Built-in characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,8 +80,9 @@ pub fn staged(def: CharacterDef) -> Instance {
     let colors = site.props().iter().map(|prop| (world.add_body(&prop.body), prop.color)).collect();
     let start = site.spawn().world_from_character * Transform::from_translation(Vec3::Z * START_DISTANCE);
     let character = Character::spawn(&mut world, &def, start);
+    let directed = Directed::default();
     let mut stage =
-        Staged { def, site, start, colors, character, since: 0, was: None, led: None, model: Vec::new() };
+        Staged { def, site, start, colors, character, since: 0, was: None, directed, model: Vec::new() };
     stage.walk();
     stage.show();
     Instance::new(world, stage)
@@ -99,8 +99,8 @@ struct Staged {
     since: u32,
     /// Part of the run; `None` until the push.
     was: Option<Part>,
-    /// Velocity set by a user, m/s.
-    led: Option<Vec3>,
+    /// Instructions of a user, with which the demo ends.
+    directed: Directed,
     /// World from joint.
     model: Vec<Affine>,
 }
@@ -114,12 +114,12 @@ enum Part {
 
 impl Staged {
     fn walk(&mut self) {
+        if self.directed.is_directed {
+            return self.directed.go_on(&mut self.character);
+        }
         let speed = WALK * (self.def.ragdoll.height / MANNEQUIN).sqrt();
         let ahead = self.character.world_from_character().rotation * Vec3::Z;
-        self.character.set_move(self.led.unwrap_or(ahead * speed));
-        if let Some(way) = self.led.filter(|&way| way != Vec3::ZERO) {
-            self.character.face(way);
-        }
+        self.character.set_move(ahead * speed);
     }
 
     fn show(&mut self) {
@@ -154,13 +154,6 @@ impl Staged {
         self.character.enter(world);
         (self.since, self.was) = (0, None);
     }
-
-    /// Returns the centre of all joints' bounds, world space, metres.
-    fn middle(&self) -> Vec3 {
-        let points = self.model.iter().map(|joint| Aabb { min: joint.translation, max: joint.translation });
-        let around = points.reduce(|a, b| a.merge(&b)).unwrap_or_default();
-        around.center()
-    }
 }
 
 impl Script for Staged {
@@ -176,10 +169,11 @@ impl Script for Staged {
         self.was = part;
         let dt = world.def().dt();
         let passed = self.since as f32 * dt;
+        let is_demo = !self.directed.is_directed;
         match part {
-            None if self.led.is_none() && self.is_at_the_push(dt) => self.shove(world),
-            Some(Part::Up) if self.led.is_none() && passed > WALKS_ON => self.begin_again(world),
-            Some(Part::Down) if passed > STAYS_DOWN => self.begin_again(world),
+            None if is_demo && self.is_at_the_push(dt) => self.shove(world),
+            Some(Part::Up) if is_demo && passed > WALKS_ON => self.begin_again(world),
+            Some(Part::Down) if is_demo && passed > STAYS_DOWN => self.begin_again(world),
             _ => {}
         }
         self.walk();
@@ -190,16 +184,14 @@ impl Script for Staged {
         self.character.save(out);
         out.u32(self.since);
         out.u8(self.was.map_or(0, |part| 1 + part as u8));
-        out.u8(u8::from(self.led.is_some()));
-        out.vec3(self.led.unwrap_or(Vec3::ZERO));
+        self.directed.save(out);
     }
 
     fn load(&mut self, bytes: &mut Reader<'_>) -> Result<(), ReadError> {
         self.character.load(bytes)?;
         self.since = bytes.u32()?;
         self.was = [None, Some(Part::Down), Some(Part::Up)].get(usize::from(bytes.u8()?)).copied().flatten();
-        let (is_led, way) = (bytes.u8()? != 0, bytes.vec3()?);
-        self.led = is_led.then_some(way);
+        self.directed = Directed::load(bytes)?;
         self.show();
         Ok(())
     }
@@ -211,7 +203,7 @@ impl Script for Staged {
     /// View from the right of the stairs, a little from the front; the box moves along with the character.
     fn camera_hint(&self) -> CameraHint {
         let half = ROOM * self.def.ragdoll.height;
-        let bounds = Aabb::around(self.middle(), half);
+        let bounds = Aabb::around(middle(&self.model), half);
         CameraHint { direction: Vec3::new(0.9, 0.28, 0.42), bounds: Some(bounds), trails: Trails::None }
     }
 
@@ -221,6 +213,10 @@ impl Script for Staged {
 
     fn bodies_of_figures(&self) -> Vec<BodyId> {
         self.character.bodies().to_vec()
+    }
+
+    fn garments_of_figures(&self) -> &[GroupId] {
+        self.character.garments()
     }
 
     fn colors(&self) -> &[(BodyId, [f32; 3])] {
@@ -234,10 +230,18 @@ impl Script for Staged {
     }
 
     fn steer(&mut self, way: Vec3) {
-        self.led = Some(way);
+        self.directed.steer(way, &mut self.character);
     }
 
     fn steered(&self) -> Option<Vec3> {
         Some(self.character.world_from_character().translation)
+    }
+
+    fn act(&mut self, world: &mut World, act: Act) {
+        self.directed.act(act, &mut self.character, world);
+    }
+
+    fn directed(&self) -> Option<&Character> {
+        Some(&self.character)
     }
 }

@@ -155,12 +155,16 @@ pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Sta
         ..Stage::default()
     };
     let shows_skins = !layers.contains(&Layer::Bones);
-    let (figures, bodies) =
-        if shows_skins { (instance.figures(), instance.bodies_of_figures()) } else { Default::default() };
+    let (figures, bodies, worn) = if shows_skins {
+        (instance.figures(), instance.bodies_of_figures(), instance.garments_of_figures())
+    } else {
+        Default::default()
+    };
     let kinematic = if figures.is_empty() { Kinematic::Solid } else { Kinematic::Wire };
     world::paint_all_but(
         instance.world(),
         &bodies,
+        worn,
         &Frame { center: camera.target, radius, kinematic, colors: instance.colors() },
         &mut stage,
     );
@@ -169,6 +173,7 @@ pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Sta
     instance.draw(&mut lines);
     stage.scene.lines.append(&mut lines.list);
     stage.scene.lines.append(&mut curves(instance));
+    stage.scene.lines.extend(session.trails().lines());
     let with_springs = if layers.contains(&Layer::Springs) { instance.figures() } else { Vec::new() };
     layers::draw(instance.world(), &with_springs, layers, &mut stage.scene.lines);
     if let Some([from, to]) = session.hands().spring(instance.world()) {
@@ -177,6 +182,9 @@ pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Sta
     }
     if let Some(ghost) = session.ghost() {
         add_ghost(ghost.world(), instance.world(), &mut stage);
+    }
+    if let Some(twin) = session.twin() {
+        add_ghost(twin.world(), instance.world(), &mut stage);
     }
     if !has_floor(session) {
         add_grid(&around, &mut stage);

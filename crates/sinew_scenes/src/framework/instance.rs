@@ -1,13 +1,17 @@
 //! A running scene.
 
 use super::actors::Figure;
+use super::acts::Act;
 use super::camera_hint::CameraHint;
 use super::curve::Curve;
 use super::metric::{Expected, Metric};
 use core::time::Duration;
 use sinew::math::{ReadError, Reader, Vec3, Writer, max};
 use sinew::physics::stage::{NoProfiler, Profiler};
-use sinew::physics::{BodyId, BodyKind, DebugDraw, Energy, LoadError, Serial, TaskRunner, Update, World};
+use sinew::physics::{
+    BodyId, BodyKind, DebugDraw, Energy, GroupId, LoadError, Serial, TaskRunner, Update, World,
+};
+use sinew::ragdoll::Character;
 
 /// The part of a scene that accompanies its world.
 pub trait Script: Send {
@@ -67,6 +71,11 @@ pub trait Script: Send {
         Vec::new()
     }
 
+    /// Cloth that a picture does not draw, because the skins of [`figures`](Self::figures) show it.
+    fn garments_of_figures(&self) -> &[GroupId] {
+        &[]
+    }
+
     /// Colours (linear) of bodies that have their own in a picture.
     fn colors(&self) -> &[(BodyId, [f32; 3])] {
         &[]
@@ -81,6 +90,14 @@ pub trait Script: Send {
 
     /// Position of the character that a user may control, metres, world space.
     fn steered(&self) -> Option<Vec3> {
+        None
+    }
+
+    /// Carries out an instruction to the character that a user may control.
+    fn act(&mut self, _world: &mut World, _act: Act) {}
+
+    /// Returns the character that carries out instructions, if the scene has one.
+    fn directed(&self) -> Option<&Character> {
         None
     }
 }
@@ -145,6 +162,11 @@ impl Instance {
         self.script.bodies_of_figures()
     }
 
+    /// Cloth that a picture does not draw, because the skins of [`figures`](Self::figures) show it.
+    pub fn garments_of_figures(&self) -> &[GroupId] {
+        self.script.garments_of_figures()
+    }
+
     /// Colours (linear) of bodies that have their own in a picture.
     pub fn colors(&self) -> &[(BodyId, [f32; 3])] {
         self.script.colors()
@@ -165,6 +187,16 @@ impl Instance {
     /// Position of the character that a user may control, metres, world space; `None` in scenes without one.
     pub fn steered(&self) -> Option<Vec3> {
         self.script.steered()
+    }
+
+    /// Carries out an instruction to the character that a user may control; in scenes without one, nothing happens.
+    pub fn act(&mut self, act: Act) {
+        self.script.act(&mut self.world, act);
+    }
+
+    /// Returns the character that carries out instructions; `None` in scenes without one.
+    pub fn directed(&self) -> Option<&Character> {
+        self.script.directed()
     }
 
     /// World of the instance, for queries, drawing and snapshots.

@@ -1,6 +1,7 @@
 //! Framework of scenes: their building blocks and shared measurements.
 
 pub(crate) mod actors;
+pub(crate) mod acts;
 pub(crate) mod camera_hint;
 pub(crate) mod curve;
 pub(crate) mod flight;

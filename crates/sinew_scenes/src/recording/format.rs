@@ -1,15 +1,18 @@
 //! The file: operations, hashes and key frames, field by field.
 
 use super::hands::Operation;
+use crate::framework::acts::Act;
 use sinew::formats::Error;
 use sinew::math::hash::hash_bytes;
 use sinew::math::{ReadError, Reader, Transform, Writer};
-use sinew::physics::BodyId;
+use sinew::physics::{BodyId, Quality, Sleeping};
 
 /// First bytes of the file.
 const MAGIC: &[u8; 8] = b"sinewrec";
-/// Version of the format. Additions increase it.
-pub const FORMAT: u32 = 2;
+/// Version of the format. Additions increase it. Not 3, which a flipped bit would turn into 2.
+pub const FORMAT: u32 = 4;
+/// Version without instructions to characters and solver settings, which can still be read.
+const WITHOUT_ACTS: u32 = 2;
 /// Version without checksums, which can still be read.
 const UNCHECKED: u32 = 1;
 /// Largest number of steps in a block.
@@ -91,10 +94,11 @@ impl Recording {
         let format = reader.u32().map_err(|error| wrong(&error))?;
         let recording = match format {
             UNCHECKED => Self::read_unchecked(&mut reader),
-            FORMAT => Self::read_checked(&mut reader),
+            WITHOUT_ACTS | FORMAT => Self::read_checked(&mut reader),
             _ => {
-                let what =
-                    format!("is a recording of format {format}; this version reads {UNCHECKED} and {FORMAT}");
+                let what = format!(
+                    "is a recording of format {format}; this version reads {UNCHECKED}, {WITHOUT_ACTS} and {FORMAT}"
+                );
                 return Err(Error::unsupported(what, "byte 8"));
             }
         };
@@ -221,7 +225,17 @@ mod kind {
     pub const THROW: u8 = 5;
     pub const PUT: u8 = 6;
     pub const STEER: u8 = 7;
+    pub const PLAY: u8 = 8;
+    pub const LIMP: u8 = 9;
+    pub const POWERED: u8 = 10;
+    pub const GET_UP: u8 = 11;
+    pub const GRAVITY: u8 = 12;
+    pub const SOLVE: u8 = 13;
+    pub const SLEEP: u8 = 14;
 }
+
+/// Qualities of the solver, by their number in the file.
+const QUALITIES: [Quality; 3] = [Quality::Fast, Quality::Balanced, Quality::Exact];
 
 fn write_operation(out: &mut Writer, operation: &Operation) {
     match *operation {
@@ -238,6 +252,25 @@ fn write_operation(out: &mut Writer, operation: &Operation) {
         Operation::Steer { way } => {
             out.u8(kind::STEER);
             out.vec3(way);
+        }
+        Operation::Act { act: Act::Play(clip) } => {
+            out.u8(kind::PLAY);
+            out.u32(clip);
+        }
+        Operation::Act { act: Act::Limp } => out.u8(kind::LIMP),
+        Operation::Act { act: Act::Powered } => out.u8(kind::POWERED),
+        Operation::Act { act: Act::GetUp } => out.u8(kind::GET_UP),
+        Operation::Gravity { gravity } => {
+            out.u8(kind::GRAVITY);
+            out.vec3(gravity);
+        }
+        Operation::Solve { quality } => {
+            out.u8(kind::SOLVE);
+            out.u8(QUALITIES.iter().position(|&it| it == quality).unwrap_or(0) as u8);
+        }
+        Operation::Sleep { sleeping } => {
+            out.u8(kind::SLEEP);
+            out.u8(u8::from(sleeping == Sleeping::On));
         }
         Operation::Push { body, impulse, point } => {
             out.u8(kind::PUSH);
@@ -276,6 +309,20 @@ fn read_operation(reader: &mut Reader<'_>) -> Result<Option<Operation>, ReadErro
             density: reader.f32()?,
         },
         kind::STEER => Operation::Steer { way: reader.vec3()? },
+        kind::PLAY => Operation::Act { act: Act::Play(reader.u32()?) },
+        kind::LIMP => Operation::Act { act: Act::Limp },
+        kind::POWERED => Operation::Act { act: Act::Powered },
+        kind::GET_UP => Operation::Act { act: Act::GetUp },
+        kind::GRAVITY => Operation::Gravity { gravity: reader.vec3()? },
+        kind::SLEEP => {
+            let sleeping = if reader.u8()? == 0 { Sleeping::Off } else { Sleeping::On };
+            Operation::Sleep { sleeping }
+        }
+        kind::SOLVE => {
+            let number = usize::from(reader.u8()?);
+            let quality = QUALITIES.get(number).ok_or_else(|| reader.error("no such quality"))?;
+            Operation::Solve { quality: *quality }
+        }
         kind::PUT => {
             Operation::Put { position: reader.vec3()?, half_extents: reader.vec3()?, density: reader.f32()? }
         }

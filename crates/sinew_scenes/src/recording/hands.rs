@@ -1,10 +1,11 @@
 //! User interaction with a running scene.
 
+use crate::framework::acts::Act;
 use crate::framework::instance::Instance;
 use sinew::math::{Transform, Vec3, max};
 use sinew::physics::{
-    BodyDef, BodyId, BodyKind, JointCollision, JointDef, JointId, JointKind, Motor, Shape, ShapeDef, SixDof,
-    Softness, World,
+    BodyDef, BodyId, BodyKind, JointCollision, JointDef, JointId, JointKind, Motor, Quality, Shape, ShapeDef,
+    SixDof, Sleeping, Softness, World,
 };
 
 /// User operation on a running scene between two steps. Lengths are in metres, positions in world space.
@@ -48,6 +49,26 @@ pub enum Operation {
     Steer {
         /// Velocity, m/s.
         way: Vec3,
+    },
+    /// Gives an instruction to the character that a user may control; in scenes without one, nothing happens.
+    Act {
+        /// The instruction.
+        act: Act,
+    },
+    /// Sets the gravity of the world.
+    Gravity {
+        /// Acceleration, m/s².
+        gravity: Vec3,
+    },
+    /// Sets the quality of the solver.
+    Solve {
+        /// The quality.
+        quality: Quality,
+    },
+    /// Sets the sleeping of all bodies in the world.
+    Sleep {
+        /// Permission to fall asleep.
+        sleeping: Sleeping,
     },
     /// Adds a box to the world.
     Put {
@@ -116,8 +137,14 @@ impl Hands {
             Operation::Grab { body, point } => self.grab(world, body, point),
             Operation::Lead { to } => self.lead(world, to),
             Operation::Release => self.release(world),
-            // Steering is not an operation on the world.
-            Operation::Steer { .. } => {}
+            // These are operations on the scene.
+            Operation::Steer { .. } | Operation::Act { .. } => {}
+            Operation::Gravity { gravity } => world.set_gravity(gravity),
+            Operation::Solve { quality } => world.set_world_quality(quality),
+            Operation::Sleep { sleeping } => {
+                let bodies: Vec<BodyId> = world.body_ids().collect();
+                bodies.into_iter().for_each(|body| world.set_sleeping(body, sleeping));
+            }
             Operation::Push { body, impulse, point } => {
                 if moves(world, body) {
                     world.apply_impulse(body, impulse, point);
@@ -200,7 +227,7 @@ fn mass_together(world: &World, body: BodyId) -> f32 {
 impl Operation {
     /// Returns the operation on the body with the same index in any world: ids belong to one world, and a replay runs
     /// in another.
-    pub(super) fn of_any_world(mut self) -> Self {
+    pub fn of_any_world(mut self) -> Self {
         if let Self::Grab { body, .. } | Self::Push { body, .. } = &mut self {
             *body = BodyId::from_bits(body.to_bits());
         }
@@ -212,6 +239,7 @@ impl Operation {
         match *self {
             _ if !self.is_sound() => {}
             Self::Steer { way } => instance.steer(way),
+            Self::Act { act } => instance.act(act),
             Self::Push { body, impulse, point } => instance.push(body, impulse, point),
             _ => {}
         }
@@ -224,8 +252,9 @@ impl Operation {
         match *self {
             Self::Grab { point, .. } => near(point),
             Self::Lead { to } => near(to),
-            Self::Release => true,
+            Self::Release | Self::Act { .. } | Self::Solve { .. } | Self::Sleep { .. } => true,
             Self::Steer { way } => near(way),
+            Self::Gravity { gravity } => near(gravity),
             Self::Push { impulse, point, .. } => near(impulse) && near(point),
             Self::Throw { position, velocity, radius, density } => {
                 near(position) && near(velocity) && positive(radius) && positive(density)

@@ -27,4 +27,4 @@ mod record;
 pub use compare::{Difference, compare};
 pub use format::{FORMAT, KeyFrame, RecordedStep, Recording};
 pub use hands::{Hands, Operation};
-pub use record::{Mark, Recorder, Replay, ReplayedStep};
+pub use record::{Mark, Recorder, RecorderMark, Replay, ReplayedStep};

@@ -94,6 +94,27 @@ impl Recorder {
         &self.recording
     }
 
+    /// Saves the present state with the recording so far, to return to it.
+    pub fn mark(&self) -> RecorderMark {
+        let mut out = Writer::new();
+        self.instance.save(&mut out);
+        RecorderMark {
+            state: out.into_bytes(),
+            hands: self.hands.clone(),
+            recording: self.recording.clone(),
+            operations: self.operations.clone(),
+        }
+    }
+
+    /// Returns to a state of this run. Returns false if the scene cannot be restored; the run is then unusable. Metrics are
+    /// those of the whole run, except those that a scene saves.
+    pub fn go_to(&mut self, mark: &RecorderMark) -> bool {
+        self.hands = mark.hands.clone();
+        self.recording = mark.recording.clone();
+        self.operations = mark.operations.clone();
+        self.instance.load(&mut Reader::new(&mark.state)).is_ok()
+    }
+
     /// The recording, with the poses at its end.
     pub fn finish(mut self) -> Recording {
         let end = key_frame(self.instance.world());
@@ -107,6 +128,15 @@ impl Recorder {
 fn key_frame(world: &World) -> KeyFrame {
     let bodies = world.body_ids().map(|id| (id, world.transform(id))).collect();
     KeyFrame { step: world.step_count(), bodies }
+}
+
+/// Saved state within a run, to which its recorder can return.
+#[derive(Clone, Debug)]
+pub struct RecorderMark {
+    state: Vec<u8>,
+    hands: Hands,
+    recording: Recording,
+    operations: Vec<Operation>,
 }
 
 /// A recording in replay: the recorded operations are applied again.

@@ -23,6 +23,7 @@ mod ragdolls;
 mod shows;
 
 pub use crate::framework::actors::Figure;
+pub use crate::framework::acts::Act;
 pub use crate::framework::camera_hint::{CameraHint, Trails};
 pub use crate::framework::curve::Curve;
 pub use crate::framework::instance::{Instance, Part, Script};

@@ -3,8 +3,9 @@
 use sinew::math::hash::hash_bytes;
 use sinew::math::{Random, Vec3};
 use sinew::physics::stage::NoProfiler;
-use sinew::physics::{BodyKind, Threads};
+use sinew::physics::{BodyKind, Quality, Sleeping, Threads};
 use sinew_scenes::recording::{Difference, KeyFrame, Operation, Recorder, Recording, Replay, compare};
+use sinew_scenes::scenes::Act;
 
 /// Records a stack that is pulled, struck and shot at; `harder` changes one push.
 fn played(harder: f32) -> Recording {
@@ -30,6 +31,10 @@ fn played(harder: f32) -> Recording {
                 half_extents: Vec3::splat(0.2),
                 density: 500.0,
             }),
+            70 => recorder.apply(Operation::Gravity { gravity: Vec3::NEG_Y * 3.7 }),
+            74 => recorder.apply(Operation::Solve { quality: Quality::Exact }),
+            78 => recorder.apply(Operation::Sleep { sleeping: Sleeping::Off }),
+            82 => recorder.apply(Operation::Act { act: Act::Play(3) }),
             _ => {}
         }
         recorder.step();
@@ -109,7 +114,7 @@ fn stored_file_is_read() {
     let refused = |bytes: &[u8]| Recording::read(bytes).expect_err("it is refused").to_string();
     assert_eq!(refused(b"nothing of the kind"), "is no recording (byte 0)");
     let later = [&bytes[..8], &[9, 0, 0, 0], &bytes[12..]].concat();
-    assert_eq!(refused(&later), "is a recording of format 9; this version reads 1 and 2 (byte 8)");
+    assert_eq!(refused(&later), "is a recording of format 9; this version reads 1, 2 and 4 (byte 8)");
 }
 
 /// A single flipped bit anywhere is reported.

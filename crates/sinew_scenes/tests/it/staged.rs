@@ -1,5 +1,9 @@
 //! The demo in a loop.
 
+use sinew::math::{Reader, Vec3, Writer};
+use sinew::ragdoll::State;
+use sinew_scenes::fallen::fall_of_character;
+use sinew_scenes::scenes::{Act, Instance, Metric};
 use sinew_scenes::staged::{Sample, staged};
 
 /// Every sample is pushed, falls, gets up, walks on, and begins again at the start, twice.
@@ -23,4 +27,76 @@ fn samples_fall_get_up_and_begin_again() {
         assert!(begins.len() >= 2, "{}: {begins:?}", sample.name());
         assert!(lowest < start.y - 1.0, "{} does not leave the porch", sample.name());
     }
+}
+
+/// Takes steps for a time, seconds.
+fn run(stage: &mut Instance, seconds: u32) {
+    (0..60 * seconds).for_each(|_| stage.step());
+}
+
+fn state(stage: &Instance) -> State {
+    stage.directed().expect("it carries out instructions").state()
+}
+
+/// Returns true if the character plays the clip of that index.
+fn plays(stage: &Instance, clip: usize) -> bool {
+    let character = stage.directed().expect("it carries out instructions");
+    let id = character.def().clip(clip);
+    character.animator().tracks().any(|track| track.def().clip == id)
+}
+
+/// The character on the stage goes limp and stays down, plays a clip where it lies, falls with muscles, gets up, and walks as the
+/// user leads it.
+#[test]
+fn a_character_carries_out_instructions() {
+    for mut stage in [staged(Sample::Mannequin.character()), fall_of_character(Sample::Mannequin.character())]
+    {
+        run(&mut stage, 1);
+        stage.act(Act::Limp);
+        run(&mut stage, 14);
+        assert_eq!(state(&stage), State::Limp, "it stays down");
+        stage.act(Act::Powered);
+        run(&mut stage, 1);
+        assert_ne!(state(&stage), State::Animated);
+        stage.act(Act::Limp);
+        let clips = stage.directed().expect("a character").def().motions().clips.len();
+        stage.act(Act::Play(clips as u32 - 1));
+        run(&mut stage, 2);
+        assert_eq!(state(&stage), State::Animated);
+        assert!(plays(&stage, clips - 1), "it plays its last clip");
+        stage.act(Act::Powered);
+        run(&mut stage, 1);
+        assert_ne!(state(&stage), State::Animated);
+        stage.act(Act::GetUp);
+        run(&mut stage, 10);
+        assert_eq!(state(&stage), State::Animated, "it is up");
+        let before = stage.steered().expect("it can be led");
+        stage.steer(Vec3::X * 1.2);
+        run(&mut stage, 3);
+        let way = stage.steered().expect("it can be led") - before;
+        assert!(way.x > 1.5 && way.z.abs() < 1.0, "it walked {way}");
+        // An instruction that does not exist changes nothing.
+        stage.act(Act::Play(9999));
+        run(&mut stage, 1);
+        assert!(stage.metrics().iter().filter(|it| it.name == "nan").all(Metric::is_met));
+    }
+}
+
+/// An instruction is a part of a saved state.
+#[test]
+fn instructions_are_saved() {
+    let mut stage = staged(Sample::Mannequin.character());
+    run(&mut stage, 1);
+    stage.act(Act::Limp);
+    run(&mut stage, 2);
+    stage.act(Act::Play(0));
+    let mut out = Writer::new();
+    stage.save(&mut out);
+    let bytes = out.into_bytes();
+    run(&mut stage, 3);
+    let hash = stage.world().hash();
+    stage.load(&mut Reader::new(&bytes)).expect("the same scene");
+    run(&mut stage, 3);
+    assert_eq!(stage.world().hash(), hash);
+    assert!(plays(&stage, 0));
 }

@@ -12,8 +12,17 @@ const WIDTH: f32 = 250.0;
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     let panel = egui::Panel::left("scenes").resizable(true).default_size(WIDTH).frame(style::panel());
     panel.show(ui, |ui| {
-        let search = TextEdit::singleline(&mut app.search).hint_text("Search scenes  ( / )");
-        let search = ui.add(search.desired_width(f32::INFINITY));
+        let search = ui.horizontal(|ui| {
+            let clears = !app.search.is_empty();
+            let width = ui.available_width() - if clears { 28.0 } else { 0.0 };
+            let field = TextEdit::singleline(&mut app.search).hint_text("Search scenes  ( / )");
+            let field = ui.add(field.desired_width(width));
+            if clears && ui.button("×").on_hover_text("Clear").clicked() {
+                app.search.clear();
+            }
+            field
+        });
+        let search = search.inner;
         if std::mem::take(&mut app.focuses_search) {
             search.request_focus();
         }
@@ -21,6 +30,15 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
         let found: Vec<&'static Scene> =
             registry().iter().filter(|scene| matches(scene, &app.search)).collect();
         let mut chosen = if entered { found.first().copied() } else { None };
+        let runs = app.tour.runs;
+        let label = if runs { "Stop" } else { "Run all scenes" };
+        if ui
+            .small_button(label)
+            .on_hover_text("Each to its end at full speed; ✔ meets its expectations")
+            .clicked()
+        {
+            app.tour();
+        }
         ui.add_space(4.0);
         ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
             chosen = list(app, ui, &found).or(chosen);
@@ -62,7 +80,12 @@ fn list(app: &App, ui: &mut egui::Ui, found: &[&'static Scene]) -> Option<&'stat
         header.show(ui, |ui| {
             for scene in found.iter().copied().filter(|scene| scene.chapter == chapter) {
                 let is_current = current.is_some_and(|it| it.name == scene.name);
-                let name = scene.name.replace('_', " ");
+                let mark = match app.tour.result(scene.name) {
+                    Some(true) => "✔ ",
+                    Some(false) => "✘ ",
+                    None => "",
+                };
+                let name = format!("{mark}{}", scene.name.replace('_', " "));
                 if ui.selectable_label(is_current, name).on_hover_text(scene.about).clicked() {
                     chosen = Some(scene);
                 }

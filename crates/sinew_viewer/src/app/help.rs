@@ -3,7 +3,7 @@
 use super::{App, style};
 use egui::{Align2, Color32, FontId, Grid, RichText};
 
-/// Hints shown at the start.
+/// Hints shown at the start, in a small picture only the first.
 const HINTS: [&str; 3] = [
     "Click to push him; drag a body to pull it, the background to look around",
     "Press B to throw a ball, Space to pause, R to start again",
@@ -11,13 +11,15 @@ const HINTS: [&str; 3] = [
 ];
 
 /// Keys, each with its effect.
-const KEYS: [(&str, &str); 22] = [
+const KEYS: [(&str, &str); 24] = [
     ("left drag", "on a body: pull it; on the background: look around"),
     ("right drag", "look around"),
     ("middle drag, Shift + drag", "shift the view"),
     ("wheel", "nearer, farther"),
     ("W A S D, Q E", "fly; with Shift faster"),
-    ("G", "W A S D walk a character (scene 'street'), and no more"),
+    ("G", "W A S D walk the character, and no more"),
+    ("Ctrl+Z, Ctrl+Y", "undo and redo what you did; edits and settings too"),
+    ("X", "show body, point and normal below the pointer"),
     ("F; C", "see all of the scene; go along with it"),
     ("Space", "run, pause"),
     ("N, .", "one step"),
@@ -40,9 +42,10 @@ const KEYS: [(&str, &str); 22] = [
 pub(super) fn overlay(app: &App, ui: &mut egui::Ui) {
     let area = app.area;
     let font = FontId::proportional(14.0);
-    if app.shows_hints && area.width() > super::ROOMY {
+    if app.shows_hints {
+        let hints = if area.width() > super::ROOMY { &HINTS[..] } else { &HINTS[..1] };
         let mut top = area.left_top() + egui::vec2(16.0, 16.0);
-        for line in HINTS {
+        for line in hints {
             top.y = plate(ui, top, Align2::LEFT_TOP, line, &font).bottom() + 12.0;
         }
     }

@@ -1,6 +1,7 @@
 //! The right panel: the scene's description, settings, metrics, layers, stage times and state.
 
-use super::{App, editor, style, timeline};
+use super::names::{plain, value};
+use super::{App, actor, editor, solver, style, timeline};
 use crate::layers::Layer;
 use crate::session::Subject;
 use crate::stage_times::STAGES;
@@ -12,6 +13,9 @@ use std::collections::VecDeque;
 /// Width of the panel, points.
 const WIDTH: f32 = 290.0;
 
+/// Number of lines of a report that are visible without a click: sizes and counts.
+const FIRST_LINES: usize = 2;
+
 /// Shows the right panel.
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     let panel = egui::Panel::right("inspector").resizable(true).default_size(WIDTH).frame(style::panel());
@@ -21,14 +25,8 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
             ui.label(RichText::new(app.session.subject().about()).color(style::FAINT));
             ui.add_space(6.0);
             settings(app, ui);
-            let report = app.session.report();
-            if !report.is_empty() {
-                section(ui, "Report", true, |ui| {
-                    report.iter().for_each(|line| {
-                        ui.label(line);
-                    });
-                });
-            }
+            character(app, ui);
+            report(app, ui);
             if app.session.workbench().is_some() {
                 section(ui, "Ragdoll", true, |ui| editor::show(app, ui));
                 section(ui, "Findings", true, |ui| editor::findings(app, ui));
@@ -37,6 +35,9 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
                 section(ui, "Second run", true, |ui| timeline::ghost(app, ui));
             }
             section(ui, "Figures", true, |ui| figures(app, ui));
+            if app.session.is_live() {
+                section(ui, "Solver", false, |ui| solver::show(&mut app.session, ui));
+            }
             section(ui, "Layers", true, |ui| layers(app, ui));
             if !app.hides_times {
                 section(ui, "Time by stage", true, |ui| stages(app, ui));
@@ -44,6 +45,35 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
             section(ui, "State", true, |ui| state(app, ui));
         });
     });
+}
+
+/// Shows buttons for the character of the scene, if it has one.
+fn character(app: &mut App, ui: &mut egui::Ui) {
+    let mut pressed = None;
+    if let Some(character) = app.session.instance().directed().filter(|_| app.session.is_live()) {
+        let leads = app.leads.is_some();
+        section(ui, "Character", true, |ui| pressed = actor::show(character, leads, ui));
+    }
+    if let Some(pressed) = pressed {
+        app.press(pressed);
+    }
+}
+
+/// Shows the first lines of the report; the others are folded.
+fn report(app: &App, ui: &mut egui::Ui) {
+    let lines = app.session.report();
+    let (first, others) = lines.split_at(lines.len().min(FIRST_LINES));
+    let show = |ui: &mut egui::Ui, lines: &[String]| {
+        lines.iter().for_each(|line| {
+            ui.label(line);
+        });
+    };
+    if !first.is_empty() {
+        section(ui, "Report", true, |ui| show(ui, first));
+    }
+    if !others.is_empty() {
+        section(ui, &format!("{} details", others.len()), false, |ui| show(ui, others));
+    }
 }
 
 fn section(ui: &mut egui::Ui, title: &str, open: bool, add: impl FnOnce(&mut egui::Ui)) {
@@ -79,7 +109,14 @@ fn settings(app: &mut App, ui: &mut egui::Ui) {
             };
         }
         let differs = app.sliders.iter().any(|&(key, value)| current.get(key).to_bits() != value.to_bits());
-        starts |= differs && ui.button("Start with these").clicked();
+        ui.horizontal(|ui| {
+            starts |= differs && ui.button("Start with these").clicked();
+            let about = "The present settings run beside the next ones, in green";
+            if ui.selectable_label(app.pinned.is_some(), "Compare").on_hover_text(about).clicked() {
+                let pinned = app.pinned.is_none().then(|| app.session.subject().clone());
+                app.pinned = pinned;
+            }
+        });
     });
     if starts {
         let numbers =
@@ -90,7 +127,7 @@ fn settings(app: &mut App, ui: &mut egui::Ui) {
             .filter(|(it, value)| it.default.to_bits() != value.to_bits());
         let assignments: Vec<String> = changed.map(|(it, value)| format!("{}={value}", it.key)).collect();
         match Subject::scene(scene.name, &assignments) {
-            Ok(subject) => app.open(subject),
+            Ok(subject) => app.open_with_settings(subject),
             Err(line) => app.tell(line),
         }
     }
@@ -112,13 +149,15 @@ fn legend(app: &App, ui: &mut egui::Ui) {
 fn figures(app: &App, ui: &mut egui::Ui) {
     legend(app, ui);
     let metrics = app.session.metrics();
+    let beside = app.session.twin().map(sinew_scenes::scenes::Instance::metrics).unwrap_or_default();
     // The scene's expectations apply at its end.
     let is_over = match app.session.subject() {
         Subject::Scene(scene, ..) => app.session.world().step_count() >= u64::from(scene.steps),
         _ => true,
     };
     for (index, metric) in metrics.iter().enumerate() {
-        let value = metric.value.map_or("not yet".to_owned(), digits);
+        let (name, unit) = plain(metric.name);
+        let shown = metric.value.map_or("not yet".to_owned(), |it| value(it, unit));
         let color = match (metric.expected, metric.is_met()) {
             (Expected::Anything, _) => style::FAINT,
             (_, true) => style::GOOD,
@@ -126,14 +165,18 @@ fn figures(app: &App, ui: &mut egui::Ui) {
             (_, false) => style::FAINT,
         };
         ui.horizontal(|ui| {
-            ui.label(metric.name);
+            ui.label(name).on_hover_text(metric.name);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.label(RichText::new(value).monospace().color(color));
+                ui.label(RichText::new(shown).monospace().color(color));
             });
         });
+        let beside = beside.iter().find(|it| it.name == metric.name).and_then(|it| it.value);
+        if let Some(beside) = beside {
+            ui.label(RichText::new(format!("beside {}", value(beside, unit))).small().color(timeline::GHOST));
+        }
         let bar = match metric.expected {
-            Expected::Near { value, .. } => format!("closed form {}", digits(value)),
-            Expected::AtMost(most) => format!("at most {}", digits(most)),
+            Expected::Near { value: closed, .. } => format!("closed form {}", value(closed, unit)),
+            Expected::AtMost(most) => format!("at most {}", value(most, unit)),
             Expected::Anything => String::new(),
         };
         if !bar.is_empty() {
@@ -234,14 +277,4 @@ fn state(app: &App, ui: &mut egui::Ui) {
     if let Some(step) = app.session.diverged() {
         ui.label(RichText::new(format!("differs from the recording from step {step} on")).color(style::BAD));
     }
-}
-
-/// Formats a number with five digits.
-fn digits(x: f64) -> String {
-    let size = x.abs();
-    if size != 0.0 && !(1e-3..1e5).contains(&size) {
-        return format!("{x:.3e}");
-    }
-    let decimals = [1.0, 10.0, 100.0, 1000.0].iter().filter(|&&bound| size < bound).count();
-    format!("{x:.decimals$}")
 }

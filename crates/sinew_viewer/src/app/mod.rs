@@ -1,15 +1,23 @@
 //! The viewer without its window: subject, user operations, and panels.
 
+mod actor;
 mod bench;
 mod browser;
 mod editor;
 mod help;
 mod inspector;
+mod keys;
 mod mouse;
+mod names;
 mod orders;
+mod probe;
+mod run_all;
+mod solver;
 mod style;
 mod timeline;
+mod tour;
 mod transport;
+mod undo;
 mod walk;
 
 use crate::chase::Chase;
@@ -18,16 +26,20 @@ use crate::preferences::Preferences;
 use crate::session::{NamedFile, Session, Subject};
 use crate::stage::Stage;
 use crate::view::{self, Orbit};
+use actor::Pressed;
 use bench::Bench;
-use egui::{Key, Rect, Vec2};
+use egui::{Rect, Vec2};
 use mouse::Mouse;
 pub use orders::Order;
+use probe::Probe;
 use sinew::math::Vec3;
 use sinew_picture::Camera;
-use sinew_scenes::recording::Recording;
+use sinew_scenes::recording::{Operation, Recording};
+use sinew_scenes::scenes::Act;
 use sinew_scenes::staged::Sample;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
+use tour::Tour;
 use web_time::{Duration, Instant};
 
 /// Longest stepping time of a frame, so that the window stays responsive in scenes slower than real time.
@@ -71,7 +83,7 @@ const SETTLING: u8 = 4;
 
 /// Least width of a window in which both panels are beside the picture, points; narrower windows fold them.
 const WIDE: f32 = 860.0;
-/// Least width of the picture that leaves room for hints, points.
+/// Least width of the picture that leaves room for all hints, points.
 const ROOMY: f32 = 600.0;
 
 /// A panel beside the picture.
@@ -115,6 +127,13 @@ pub struct App {
     follows: Option<Chase>,
     /// Velocity of the character controlled by keys, m/s; `None` while keys move the camera.
     leads: Option<Vec3>,
+    probe: Probe,
+    /// Subjects with other settings, before and after this one.
+    past: Vec<Subject>,
+    future: Vec<Subject>,
+    tour: Tour,
+    /// Settings that run beside the next ones.
+    pinned: Option<Subject>,
     hides_times: bool,
     hides_browser: bool,
     hides_panels: bool,
@@ -181,6 +200,11 @@ impl App {
             seeking: None,
             follows: None,
             leads: None,
+            probe: Probe::default(),
+            past: Vec::new(),
+            future: Vec::new(),
+            tour: Tour::default(),
+            pinned: None,
             hides_times: options.hides_times,
             hides_browser: options.hides_browser,
             hides_panels: options.hides_panels,
@@ -224,6 +248,7 @@ impl App {
     pub fn stage(&self) -> Stage<'_> {
         let mut stage = view::stage(&self.session, &self.camera(), &self.layers);
         bench::draw(self, &mut stage);
+        self.probe.draw(self.orbit.distance, &mut stage);
         stage
     }
 
@@ -320,6 +345,7 @@ impl App {
                 self.session = session;
                 self.session.set_threads(threads);
                 self.shows_hints = false;
+                (self.past, self.future, self.pinned) = (Vec::new(), Vec::new(), None);
                 self.begin();
                 self.tell(format!("opened {}", self.session.subject().title()));
             }
@@ -509,7 +535,8 @@ impl App {
             return;
         }
         if let Some(goal) = self.goal {
-            return self.hurry(goal, now);
+            self.hurry(goal, now);
+            return self.go_on_touring();
         }
         let dt = f64::from(self.session.world().def().dt());
         self.pending += passed.min(LONGEST_FRAME) * f64::from(self.speed);
@@ -553,6 +580,9 @@ impl App {
             // A still picture needs no fade.
             self.go_along(if self.hides_times { f32::INFINITY } else { self.passed });
             bench::overlay(self, ui);
+            let at = ui.input(|input| input.pointer.hover_pos()).filter(|at| self.area.contains(*at));
+            let below = at.map(|at| (at, mouse::ray(self, at)));
+            self.probe.update(below, self.session.world(), ui);
             if !self.hides_panels {
                 help::overlay(self, ui);
             }
@@ -580,112 +610,28 @@ impl App {
         }
     }
 
-    fn keys(&mut self, ui: &egui::Ui) {
-        let ctx = ui.ctx();
-        if ctx.egui_wants_keyboard_input() {
-            return;
+    /// Gives an instruction to the character of the scene.
+    pub fn act(&mut self, act: Act) {
+        if self.session.instance().directed().is_none() || !self.session.is_live() {
+            return self.tell("no character here carries out instructions");
         }
-        let pressed = |key: Key| ctx.input(|input| input.key_pressed(key));
-        let typed = |text: &str| {
-            ctx.input(|input| {
-                input.events.iter().any(|event| matches!(event, egui::Event::Text(it) if it == text))
-            })
-        };
-        if pressed(Key::Space) {
-            self.running = !self.running;
-        }
-        if pressed(Key::N) || typed(".") {
-            self.running = false;
-            self.step();
-        }
-        if pressed(Key::R) {
-            self.restart();
-        }
-        self.bench_keys(ctx);
-        if pressed(Key::F) {
-            self.frame();
-        }
-        if pressed(Key::G) {
-            walk::toggle(self);
-        }
-        if pressed(Key::C) {
-            self.follow(self.follows.is_none());
-            self.tell(if self.follows.is_some() { "the camera goes along" } else { "the camera stays" });
-        }
-        if pressed(Key::B) {
-            let at = ui.input(|input| input.pointer.hover_pos());
-            mouse::throw(self, at.filter(|at| self.area.contains(*at)));
-        }
-        if pressed(Key::P) || pressed(Key::F12) {
-            self.wants_screenshot = true;
-        }
-        if typed("?") || pressed(Key::F1) {
-            self.shows_help = !self.shows_help;
-        }
-        if typed("/") {
-            self.focuses_search = true;
-        }
-        if pressed(Key::Escape) {
-            self.shows_help = false;
-            self.shows_hints = false;
-        }
-        use Key::{H, Num0, Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9};
-        let keys = [Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9, Num0, H];
-        for (key, layer) in keys.into_iter().zip(Layer::ALL) {
-            if pressed(key) {
-                self.toggle(layer);
-            }
-        }
-        self.fly(ctx);
-    }
-
-    /// Handles keys that change a ragdoll, or seek in a recording.
-    fn bench_keys(&mut self, ctx: &egui::Context) {
-        let pressed = |key: Key| ctx.input(|input| input.key_pressed(key));
-        // Ctrl may be released by the end of a slow frame, so this uses the event's own modifiers.
-        let is_save = |event: &egui::Event| matches!(event, egui::Event::Key { key: Key::S, pressed: true, modifiers, .. } if modifiers.command);
-        let saves = |input: &egui::InputState| input.events.iter().any(is_save);
-        if ctx.input(saves) {
-            bench::save(self);
-        }
-        for (key, by) in [(Key::OpenBracket, -1), (Key::CloseBracket, 1)] {
-            if pressed(key) {
-                bench::choose_next(self, by);
-            }
-        }
-        for (key, sign) in [(Key::Minus, -1.0), (Key::Equals, 1.0), (Key::Plus, 1.0)] {
-            if pressed(key) {
-                bench::widen(self, sign);
-            }
-        }
-        let at = self.session.world().step_count();
-        for (key, step) in [
-            (Key::ArrowLeft, at.saturating_sub(1)),
-            (Key::ArrowRight, at + 1),
-            (Key::Home, 0),
-            (Key::End, u64::MAX),
-        ] {
-            if pressed(key) {
-                self.seek(step);
-            }
+        self.session.apply(Operation::Act { act });
+        (self.leads, self.running, self.shows_hints) = (None, true, false);
+        self.follow(true);
+        if let Some(character) = self.session.instance().directed() {
+            self.tell(actor::told(act, character));
         }
     }
 
-    /// Moves the camera while keys are held.
-    fn fly(&mut self, ctx: &egui::Context) {
-        let (seconds, fast) = ctx.input(|input| (input.stable_dt.min(0.1), input.modifiers.shift));
-        if ctx.input(|input| input.modifiers.command) {
-            return;
-        }
-        let held = |key: Key| ctx.input(|input| f32::from(u8::from(input.key_down(key))));
-        if self.leads.is_some() {
-            return walk::lead(self, held(Key::D) - held(Key::A), held(Key::W) - held(Key::S), fast);
-        }
-        let way =
-            Vec3::new(held(Key::D) - held(Key::A), held(Key::E) - held(Key::Q), held(Key::W) - held(Key::S));
-        if way != Vec3::ZERO {
-            self.orbit.shift(way * (seconds * if fast { 2.4 } else { 0.8 }));
-            ctx.request_repaint();
+    /// Carries out what a button for the character does.
+    fn press(&mut self, pressed: Pressed) {
+        match pressed {
+            Pressed::Hit => {
+                self.running = true;
+                mouse::push_subject(self);
+            }
+            Pressed::Walk => walk::toggle(self),
+            Pressed::Act(act) => self.act(act),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Mouse input in the picture: grab, pull, throw; rotate, pan and zoom the camera.
 
 use super::{App, bench};
-use egui::{PointerButton, Pos2, Sense};
+use egui::{CursorIcon, PointerButton, Pos2, Sense};
 use sinew::math::{Vec3, min, normalize_or};
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyHit, BodyId, BodyKind, BodyKinds, QueryFilter};
@@ -87,12 +87,30 @@ pub(super) fn act(app: &mut App, ui: &mut egui::Ui) {
     } else if turns {
         app.orbit.turn(-delta.x * TURN, delta.y * TURN);
     }
+    if response.hovered() || app.mouse.is_busy() {
+        show_grip(app, ui);
+    }
     // A page scrolls by the wheel.
     if response.hovered() && !app.hides_panels {
         let scroll = ui.input(|input| input.smooth_scroll_delta.y);
         if scroll != 0.0 {
             app.orbit.zoom((-0.0022 * scroll).exp2());
         }
+    }
+}
+
+/// Shows by the cursor whether a drag pulls the body below it.
+fn show_grip(app: &App, ui: &egui::Ui) {
+    if !app.session.is_live() || app.bench.is_busy() {
+        return;
+    }
+    let at = ui.input(|input| input.pointer.hover_pos());
+    let below = at.and_then(|at| body_at(app, &ray(app, at)));
+    let world = app.session.world();
+    if app.mouse.is_busy() {
+        ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+    } else if below.is_some_and(|hit| world.kind(hit.body) == BodyKind::Dynamic) {
+        ui.ctx().set_cursor_icon(CursorIcon::Grab);
     }
 }
 
@@ -154,7 +172,7 @@ pub(super) fn throw(app: &mut App, at: Option<Pos2>) {
     app.tell("threw a ball");
 }
 
-fn ray(app: &App, at: Pos2) -> Ray {
+pub(super) fn ray(app: &App, at: Pos2) -> Ray {
     let (area, at) = (app.area, at - app.area.min);
     app.orbit.ray(at.x / area.width(), at.y / area.height(), area.width() / area.height())
 }

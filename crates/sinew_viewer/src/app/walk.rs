@@ -17,13 +17,15 @@ pub(super) fn toggle(app: &mut App) {
             app.leads = Some(Vec3::ZERO);
             app.orbit.target = place + Vec3::Y * EYES;
             app.orbit.distance = app.orbit.distance.min(6.0);
+            app.follows = None;
             app.running = true;
             app.tell("W A S D walk, with Shift they run; G ends it");
         }
-        (None, None) => app.tell("no character here can be steered: open the scene 'street'"),
+        (None, None) => app.tell("no character here can be steered"),
         (Some(_), _) => {
             app.session.apply(Operation::Steer { way: Vec3::ZERO });
             app.leads = None;
+            app.follow(app.session.subject().is_staged() || app.session.workbench().is_some());
             app.tell("the keys move the camera again");
         }
     }

@@ -4,6 +4,7 @@ mod files;
 mod playback;
 mod subject;
 mod takes;
+mod undo;
 mod workbench;
 
 pub use playback::Ghost;
@@ -15,12 +16,15 @@ use files::Opened;
 use playback::Playback;
 use sinew::formats::{Error, read_bytes};
 use sinew::math::Affine;
-use sinew::physics::{BodyId, Serial, TaskRunner, Threads, World};
+use sinew::physics::stage::NoProfiler;
+use sinew::physics::{BodyId, BodyKind, Serial, Sleeping, TaskRunner, Threads, World};
 use sinew::ragdoll::settings::BoneSettings;
+use sinew_picture::world::Trails;
 use sinew_scenes::recording::{Hands, Operation, Recorder, Recording};
-use sinew_scenes::scenes::{Instance, Metric};
+use sinew_scenes::scenes::{Instance, Metric, Trails as DrawnTrails};
 use sinew_scenes::staged::staged;
 use std::path::Path;
+use undo::Undo;
 use web_time::{Duration, Instant};
 
 /// Mode in which a subject runs.
@@ -55,6 +59,13 @@ pub struct Session {
     ghost: Option<Box<Ghost>>,
     /// Poses of the workbench's character at its start and after each step, world from joint.
     poses: Vec<Vec<Affine>>,
+    /// Paths of a few moving bodies.
+    trails: Trails,
+    /// Number of steps up to which the trails are drawn.
+    trailed: u64,
+    undo: Undo,
+    /// The same scene with other settings, which takes the same operations, and its subject.
+    twin: Option<(Box<Recorder>, Subject)>,
 }
 
 impl Session {
@@ -92,7 +103,7 @@ impl Session {
     }
 
     fn of(subject: Subject, run: Run) -> Self {
-        Self {
+        let mut session = Self {
             subject,
             run,
             threads: 1,
@@ -104,7 +115,37 @@ impl Session {
             bodies: Vec::new(),
             ghost: None,
             poses: Vec::new(),
+            trails: Trails::default(),
+            trailed: 0,
+            undo: Undo::default(),
+            twin: None,
+        };
+        session.begin_trails();
+        session
+    }
+
+    /// Begins the trails at the present positions.
+    fn begin_trails(&mut self) {
+        let drawn = self.instance().camera_hint().trails;
+        self.trails = if drawn == DrawnTrails::None { Trails::default() } else { Trails::of(self.world()) };
+        self.trailed = self.world().step_count();
+    }
+
+    /// Extends the trails by a step; begins them again after a jump in time.
+    fn extend_trails(&mut self) {
+        let now = self.world().step_count();
+        if now == self.trailed + 1 {
+            let mut trails = core::mem::take(&mut self.trails);
+            trails.go_on(self.world());
+            (self.trails, self.trailed) = (trails, now);
+        } else if now != self.trailed {
+            self.begin_trails();
         }
+    }
+
+    /// Returns the paths of a few moving bodies.
+    pub fn trails(&self) -> &Trails {
+        &self.trails
     }
 
     /// Starts the fall of a ragdoll.
@@ -149,7 +190,12 @@ impl Session {
         };
         started.set_threads(self.threads);
         started.ghost = self.ghost.take();
+        started.undo = core::mem::take(&mut self.undo).of_edits();
+        let twin = self.twin.take().map(|(_, subject)| subject);
         *self = started;
+        if let Some(subject) = twin {
+            self.set_twin(&subject);
+        }
         self.follow();
         Ok(())
     }
@@ -173,7 +219,9 @@ impl Session {
     /// One line: there is no ragdoll, or the edit is invalid; nothing changes then.
     pub fn edit(&mut self, body: usize, wish: BoneSettings) -> Result<(), String> {
         let workbench = self.workbench.as_mut().ok_or("only ragdolls of files can be edited")?;
+        let before = workbench.wish(body);
         workbench.set_wish(body, wish)?;
+        self.undo.edited(body, before);
         self.restart().map_err(|error| error.to_string())
     }
 
@@ -217,8 +265,46 @@ impl Session {
     /// Applies an operation to the scene; ignored in a recording.
     pub fn apply(&mut self, operation: Operation) {
         if let Run::Live(recorder) = &mut self.run {
+            if self.undo.begins(&operation) {
+                self.undo.changed(recorder.mark());
+            }
             recorder.apply(operation);
+            if let Some((twin, _)) = &mut self.twin {
+                twin.apply(operation.of_any_world());
+            }
         }
+    }
+
+    /// Runs the scene with other settings beside the first run.
+    pub fn set_twin(&mut self, subject: &Subject) {
+        if let Subject::Scene(scene, settings, assignments) = subject {
+            let run = Recorder::of(scene.start(settings), scene.name, assignments);
+            self.twin = Some((Box::new(run), subject.clone()));
+        }
+    }
+
+    /// Returns the run beside the first one.
+    pub fn twin(&self) -> Option<&Instance> {
+        self.twin.as_ref().map(|(twin, _)| twin.instance())
+    }
+
+    /// Returns to the moment before the last operation or edit, or with `redo` to that after it; returns false if there is
+    /// none.
+    ///
+    /// # Errors
+    /// One line: the scene cannot be restored.
+    pub fn undo(&mut self, redo: bool) -> Result<bool, String> {
+        let mut undo = core::mem::take(&mut self.undo);
+        let done = undo.go(self, redo);
+        self.undo = undo;
+        done
+    }
+
+    /// Returns true if a dynamic body may fall asleep.
+    pub fn may_sleep(&self) -> bool {
+        let world = self.world();
+        let mut moving = world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic);
+        moving.next().is_none_or(|id| world.sleeping(id) == Sleeping::On)
     }
 
     /// Returns true if the session accepts operations.
@@ -233,6 +319,9 @@ impl Session {
         let went_on = match &mut self.run {
             Run::Live(recorder) => {
                 recorder.step_with(&*self.runner, &self.times);
+                if let Some((twin, _)) = &mut self.twin {
+                    twin.step_with(&*self.runner, &NoProfiler);
+                }
                 true
             }
             Run::Replay(playback) => playback.step(&*self.runner, &self.times),
@@ -240,6 +329,7 @@ impl Session {
         self.times.end_step();
         self.step_time = start.elapsed();
         self.keep_pose();
+        self.extend_trails();
         self.follow();
         went_on
     }
@@ -273,6 +363,7 @@ impl Session {
     pub fn seek(&mut self, goal: u64, until: Instant) -> bool {
         let Run::Replay(playback) = &mut self.run else { return true };
         let arrived = playback.seek(goal, &*self.runner, until);
+        self.extend_trails();
         self.follow();
         arrived
     }

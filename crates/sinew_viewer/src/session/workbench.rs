@@ -5,11 +5,14 @@ use super::takes;
 use sinew::anim::{Clip, Hints, Rig, RigAnalysis, analyze_hinted};
 use sinew::formats::{MotionFile, ReadOptions, append_clip, no_files, read_gltf, write_gltf, write_ragdoll};
 use sinew::math::{Affine, Range, SwingTwistLimit, Transform};
+use sinew::motions::{own_motions, set_motions_with_builtin};
 use sinew::physics::{AxisMotion, BodyId, JointKind};
 use sinew::ragdoll::doctor::Finding;
 use sinew::ragdoll::settings::BoneSettings;
-use sinew::ragdoll::{BuildOptions, Mapping, RagdollDef, Repair, Settings, build_with, doctor};
-use sinew_scenes::fallen::{fall_of_bodies, fall_with};
+use sinew::ragdoll::{
+    BuildOptions, CharacterDef, Mapping, MotionSet, RagdollDef, Repair, Settings, build_with, doctor,
+};
+use sinew_scenes::fallen::{fall_of_bodies, fall_of_character};
 use sinew_scenes::scenes::Instance;
 
 /// A ragdoll that the user edits.
@@ -39,6 +42,8 @@ struct Character {
     analysis: RigAnalysis,
     clips: Vec<Clip>,
     notes: Vec<String>,
+    /// Motions of the character that falls: its own, and built-in ones for those that it lacks.
+    motions: MotionSet,
 }
 
 impl Workbench {
@@ -47,8 +52,13 @@ impl Workbench {
         let hints = Hints { exporter: file.generator.clone(), ..Hints::of_clips(&file.rig, &file.clips) };
         let analysis = analyze_hinted(&file.rig, &hints).map_err(|error| error.to_string())?;
         let (rig, clips, notes) = (file.rig, file.clips, file.notes);
-        let source = Source::Rig(Box::new(Character { rig, analysis, clips, notes }));
-        Self::made(source, name, Vec::new())
+        let motions = MotionSet::default();
+        let source = Source::Rig(Box::new(Character { rig, analysis, clips, notes, motions }));
+        let mut made = Self::made(source, name, Vec::new())?;
+        if let Source::Rig(character) = &mut made.source {
+            character.find_motions(&made.def);
+        }
+        Ok(made)
     }
 
     /// Creates the workbench of a ragdoll without its rig.
@@ -120,9 +130,7 @@ impl Workbench {
     /// Returns the falling ragdoll, and its bodies if no character lists them.
     pub(super) fn fall(&self) -> (Instance, Vec<BodyId>) {
         match &self.source {
-            Source::Rig(it) => {
-                (fall_with(it.rig.clone(), self.def.clone(), &it.analysis.bind_model), Vec::new())
-            }
+            Source::Rig(it) => (fall_of_character(it.def(&self.def)), Vec::new()),
             Source::Bodies(_) => fall_of_bodies(&self.def),
         }
     }
@@ -169,6 +177,24 @@ impl Workbench {
 }
 
 impl Character {
+    /// Chooses walk, idle and get-ups among the clips, and built-in motions for those that are missing.
+    fn find_motions(&mut self, ragdoll: &RagdollDef) {
+        let mut def = self.def(ragdoll);
+        let own = own_motions(&def, &self.analysis, self.clips.clone()).motions;
+        let is_filled = set_motions_with_builtin(&mut def, &self.analysis, own.clone()).is_ok();
+        self.motions = if is_filled { def.motions().clone() } else { own };
+    }
+
+    /// Returns the definition of the character with a ragdoll.
+    fn def(&self, ragdoll: &RagdollDef) -> CharacterDef {
+        let mut def = CharacterDef::new(self.rig.clone(), ragdoll.clone(), &self.analysis.bind_model);
+        // Clips that cannot be played are left out: the character can still fall.
+        if self.motions.clips.is_empty() || def.set_motions(self.motions.clone()).is_err() {
+            return CharacterDef::new(self.rig.clone(), ragdoll.clone(), &self.analysis.bind_model);
+        }
+        def
+    }
+
     /// Builds the ragdoll with those edits; returns it with notes on the build.
     fn built(&self, wishes: &[(String, BoneSettings)]) -> Result<(RagdollDef, Vec<String>), String> {
         let settings = Settings { bones: wishes.to_vec(), ..Settings::default() };

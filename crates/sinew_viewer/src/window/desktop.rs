@@ -59,14 +59,22 @@ impl Host {
     pub fn shown(&self, _: &App) {}
 
     /// Writes a picture of the window into the working folder.
-    pub fn picture(&self, screen: &mut Screen, app: &App, panels: &Panels, name: &str) -> Result<(), String> {
+    pub fn picture(
+        &self,
+        screen: &mut Screen,
+        app: &App,
+        panels: &Panels,
+        name: &str,
+    ) -> Result<String, String> {
         let image = screen.painter.picture(app, panels).map_err(|error| error.to_string())?;
         let bytes = encode::encode(PictureFormat::Png, &[image], 1).map_err(|error| error.to_string())?;
         self.keep(&NamedFile { name: name.to_owned(), bytes })
     }
 
-    /// Writes a file into the working folder.
-    pub fn keep(&self, file: &NamedFile) -> Result<(), String> {
-        sinew::formats::write_atomic(&file.name, &file.bytes).map_err(|error| error.to_string())
+    /// Writes a file into the working folder, and returns its full path.
+    pub fn keep(&self, file: &NamedFile) -> Result<String, String> {
+        sinew::formats::write_atomic(&file.name, &file.bytes).map_err(|error| error.to_string())?;
+        let path = std::path::absolute(&file.name).map_err(|error| error.to_string())?;
+        Ok(path.display().to_string())
     }
 }

@@ -78,6 +78,8 @@ struct Screen {
     input: egui_winit::State,
     /// Errors of the driver since the last frame.
     complaints: Arc<Mutex<Vec<String>>>,
+    /// Subject in the window's title.
+    title: String,
     /// Reason of a failed drawing.
     failure: Option<String>,
 }
@@ -195,7 +197,8 @@ impl Screen {
         let scale = Some(window.scale_factor() as f32);
         let input = egui_winit::State::new(ctx.clone(), egui::ViewportId::ROOT, &window, scale, None, most);
         let painter = Painter::new(gpu, config.format, [width, height]);
-        Ok(Box::new(Self { window, surface, config, painter, ctx, input, complaints, failure: None }))
+        let title = String::new();
+        Ok(Box::new(Self { window, surface, config, painter, ctx, input, complaints, title, failure: None }))
     }
 
     fn resize(&mut self, size: [u32; 2]) {
@@ -210,6 +213,11 @@ impl Screen {
     /// Runs and draws one frame.
     fn frame(&mut self, app: &mut App, host: &Host) {
         app.advance();
+        let title = app.session().subject().title();
+        if self.title != title {
+            self.window.set_title(&format!("Sinew: {title}"));
+            self.title = title;
+        }
         let input = self.input.take_egui_input(&self.window);
         let output = self.ctx.run_ui(input, |ui| app.ui(ui));
         self.input.handle_platform_output(&self.window, output.platform_output.clone());
@@ -219,7 +227,7 @@ impl Screen {
             let world = app.session().world();
             let name = format!("sinew-{}-{}.png", app.session().subject().title(), world.step_count());
             match host.picture(self, app, &panels, &name) {
-                Ok(()) => app.tell(format!("wrote {name}")),
+                Ok(path) => app.tell(format!("wrote {path}")),
                 Err(line) => app.tell(line),
             }
         }
@@ -230,7 +238,7 @@ impl Screen {
         }
         for file in app.take_files() {
             match host.keep(&file) {
-                Ok(()) => app.tell(format!("wrote {}", file.name)),
+                Ok(path) => app.tell(format!("wrote {path}")),
                 Err(line) => app.tell(line),
             }
         }

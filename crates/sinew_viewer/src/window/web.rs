@@ -199,14 +199,14 @@ impl Host {
     }
 
     /// Saves a picture of the canvas through the page.
-    pub fn picture(&self, _: &mut Screen, _: &App, _: &Panels, name: &str) -> Result<(), String> {
+    pub fn picture(&self, _: &mut Screen, _: &App, _: &Panels, name: &str) -> Result<String, String> {
         self.page.picture(name);
-        Ok(())
+        Ok(name.to_owned())
     }
 
     /// Offers a file to the user through the page.
-    pub fn keep(&self, file: &NamedFile) -> Result<(), String> {
+    pub fn keep(&self, file: &NamedFile) -> Result<String, String> {
         self.page.keep(&file.name, &file.bytes);
-        Ok(())
+        Ok(file.name.clone())
     }
 }

@@ -178,3 +178,33 @@ fn the_first_scene_stays_in_sight() {
     }
     look("first", &settled(&mut viewer));
 }
+
+/// A thrown ball is undone and done again; edits of gravity too.
+#[test]
+fn operations_are_undone() {
+    let subject = Some(Subject::scene("stack", &[]).expect("there is such a scene"));
+    let mut app = App::new(Options { subject, paused: true, ..Options::default() }).expect("it starts");
+    (0..10).for_each(|_| app.step());
+    let before = app.session().world().hash();
+    let mut session_bodies = app.session().world().body_ids().count();
+    app.obey(sinew_viewer::Order::Throw);
+    (0..30).for_each(|_| app.step());
+    let after = app.session().world().hash();
+    assert_eq!(app.session().world().body_ids().count(), session_bodies + 1);
+    app.undo(false);
+    assert_eq!((app.session().world().hash(), app.message()), (before, Some("undone")));
+    app.undo(true);
+    assert_eq!((app.session().world().hash(), app.message()), (after, Some("done again")));
+    session_bodies += 1;
+    assert_eq!(app.session().world().body_ids().count(), session_bodies);
+    // The recording is that of the run as it is now.
+    let recording = app.session().recording().expect("a scene is recorded").clone();
+    assert_eq!(recording.steps.len(), 40);
+    let mut replay = sinew_scenes::recording::Replay::start(recording).expect("it starts");
+    while let Some(step) = replay.step() {
+        assert_eq!(step.found, step.recorded, "step {}", step.step);
+    }
+    app.undo(false);
+    app.undo(false);
+    assert_eq!(app.message(), Some("nothing to undo"));
+}

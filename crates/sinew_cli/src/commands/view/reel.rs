@@ -6,22 +6,18 @@ use crate::report::progress::Progress;
 use sinew::math::{Vec3, clamp, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
-use sinew::physics::{BodyId, BodyKind, BodyKinds, QueryFilter};
-use sinew_picture::world::{self, Frame, Kinematic, Lines};
+use sinew::physics::{BodyKind, BodyKinds, QueryFilter};
+use sinew_picture::world::{self, Frame, Kinematic, Lines, Trails};
 use sinew_picture::{
-    Camera, Caption, EncodeError, Image, Line, LineDepth, Movie, PictureFormat, RenderMaterial,
-    RenderSettings, Renderer, Scene, Sky, Sun, draw,
+    Camera, Caption, EncodeError, Image, Movie, PictureFormat, RenderMaterial, RenderSettings, Renderer,
+    Scene, Sky, Sun, draw,
 };
-use sinew_scenes::scenes::{CameraHint, Curve, Expected, Figure, Instance, Metric, Trails};
+use sinew_scenes::scenes::{CameraHint, Curve, Expected, Figure, Instance, Metric, Trails as DrawnTrails};
 
 /// Pictures per second: a whole number of a GIF's hundredths of a second.
 const FPS: u32 = 20;
 /// Largest number of metrics on a picture.
 const MOST_FIGURES: usize = 3;
-/// Largest number of bodies with drawn trails; more would be indistinguishable.
-const MOST_TRAILS: usize = 4;
-/// Length of trails in steps.
-const TRAIL_STEPS: usize = 600;
 /// Number of rays that test for occlusion.
 const MOST_RAYS: usize = 64;
 /// Largest radius of the visible region around moving bodies, in radii of the largest body.
@@ -93,23 +89,18 @@ struct Take {
     hint: CameraHint,
     /// Bounds of the subject over time, so far.
     whole: Aabb,
-    /// Paths of the centres of mass so far, each with its colour.
-    trails: Vec<Trail>,
+    trails: Trails,
     /// Materials of each character.
     looks: Vec<Vec<RenderMaterial>>,
-}
-
-struct Trail {
-    body: BodyId,
-    color: [f32; 3],
-    points: Vec<Vec3>,
 }
 
 impl Take {
     fn new(run: Instance) -> Self {
         let hint = run.camera_hint();
         let looks = run.figures().iter().map(|figure| skin::looks(figure.rig)).collect();
-        let mut take = Self { hint, whole: Aabb::default(), trails: trails(&run, &hint), looks, run };
+        let trails =
+            if hint.trails == DrawnTrails::None { Trails::default() } else { Trails::of(run.world()) };
+        let mut take = Self { hint, whole: Aabb::default(), trails, looks, run };
         take.whole = take.now();
         take
     }
@@ -129,9 +120,7 @@ impl Take {
         self.run.step();
         self.whole = self.whole.merge(&self.now());
         let world = self.run.world();
-        for trail in self.trails.iter_mut().filter(|trail| world.contains(trail.body)) {
-            trail.points.push(world.center_of_mass(trail.body));
-        }
+        self.trails.go_on(world);
     }
 
     /// Tries camera directions around the subject in quarter turns and picks the one with the least occlusion.
@@ -186,12 +175,13 @@ impl Take {
             captions: self.captions(reel),
             ..Scene::default()
         };
-        world::paint_all_but(self.run.world(), &self.run.bodies_of_figures(), &frame, &mut scene);
+        let (bodies, worn) = (self.run.bodies_of_figures(), self.run.garments_of_figures());
+        world::paint_all_but(self.run.world(), &bodies, worn, &frame, &mut scene);
         for (figure, looks) in figures.iter().zip(&self.looks) {
             scene.models.extend(skin::models(figure.rig, figure.world_from_joint, looks));
         }
         scene.lines.extend(self.lines().list);
-        scene.lines.extend(self.trails.iter().flat_map(Trail::lines));
+        scene.lines.extend(self.trails.lines());
         let size = renderer.settings();
         let aspect = size.width as f32 / size.height as f32;
         renderer.render(&scene, &Camera::framing_box(&shown, self.hint.direction, aspect))
@@ -253,30 +243,6 @@ fn around(figure: &Figure<'_>) -> Option<Aabb> {
     let joints = figure.world_from_joint.iter().map(|joint| joint.translation);
     let bones = joints.map(|at| Aabb { min: at, max: at }).reduce(|a, b| a.merge(&b))?;
     Some(bones.expand(FLESH * (bones.max - bones.min).max_element()))
-}
-
-fn trails(run: &Instance, hint: &CameraHint) -> Vec<Trail> {
-    let world = run.world();
-    let bodies = world.body_ids().enumerate();
-    let moving: Vec<_> = bodies.filter(|&(_, id)| world.kind(id) != BodyKind::Static).collect();
-    if hint.trails == Trails::None || moving.len() > MOST_TRAILS {
-        return Vec::new();
-    }
-    let start = |(number, body)| Trail {
-        body,
-        color: world::body_color(number),
-        points: vec![world.center_of_mass(body)],
-    };
-    moving.into_iter().map(start).collect()
-}
-
-impl Trail {
-    fn lines(&self) -> impl Iterator<Item = Line> {
-        let recent = &self.points[self.points.len().saturating_sub(TRAIL_STEPS)..];
-        let line =
-            |ends: &[Vec3]| Line { from: ends[0], to: ends[1], color: self.color, depth: LineDepth::Tested };
-        recent.windows(2).map(line)
-    }
 }
 
 /// State of a scene: running, or at the end, when every expectation applies.

@@ -236,4 +236,8 @@ impl Script for Worn {
     fn bodies_of_figures(&self) -> Vec<BodyId> {
         self.character.bodies().to_vec()
     }
+
+    fn garments_of_figures(&self) -> &[GroupId] {
+        self.character.garments()
+    }
 }

@@ -203,4 +203,8 @@ impl Script for Dressed {
     fn bodies_of_figures(&self) -> Vec<BodyId> {
         self.character.bodies().to_vec()
     }
+
+    fn garments_of_figures(&self) -> &[GroupId] {
+        self.character.garments()
+    }
 }
