@@ -69,16 +69,17 @@ def write(fcurve, frames, values, way="LINEAR"):
     fcurve.update()
 
 
-def insert(fcurve, frames, values, value_before):
+def insert(fcurve, frames, values, own, returns):
     """Keys, one per frame from first to last; the curve before and after is unchanged.
 
-    A curve's shape between two keys depends on both: the span that the new keys cut is filled with a key a frame. `value_before` is the
-    value of a curve that had no keys.
+    A curve's shape between two keys depends on both: the span that the new keys cut is filled with a key a frame. A curve that had no keys
+    has the value `own` before, and, if it `returns`, after.
     """
     first, last = frames[0], frames[-1]
     old = [(p.co[0], p.co[1], p.interpolation, p.handle_left[:], p.handle_right[:]) for p in fcurve.keyframe_points]
     if not old:
-        write(fcurve, [first - 1.0, *frames], [value_before, *values])
+        after = [(last + 1.0, own)] if returns else []
+        write(fcurve, [first - 1.0, *frames, *(f for f, _ in after)], [own, *values, *(v for _, v in after)])
         fcurve.keyframe_points[0].interpolation = "CONSTANT"
         return
     before = [k for k in old if k[0] < first - 0.5]

@@ -43,9 +43,9 @@ def bone_values(arm, names, frames, worlds, carriers, stretches=None):
     return out
 
 
-def write_pose(arm, action, names, frames, worlds, carriers, first, alone=False, stretches=None):
+def write_pose(arm, action, names, frames, worlds, carriers, first, alone=False, stretches=None, returns=False):
     """Keys of bones for consecutive frames from the first on; before and after, the curves stay as they are. `alone`: the Action has
-    nothing before and after."""
+    nothing before and after. `returns`: channels without curves get their own values back afterwards."""
     values = bone_values(arm, names, frames, worlds, carriers, stretches)
     numbers = [float(first + i) for i in range(len(frames))]
     for n in names:
@@ -62,7 +62,7 @@ def write_pose(arm, action, names, frames, worlds, carriers, first, alone=False,
             if alone:
                 actions.write(fcurve, numbers, numbers_of)
             else:
-                actions.insert(fcurve, numbers, numbers_of, getattr(bone, what)[i])
+                actions.insert(fcurve, numbers, numbers_of, getattr(bone, what)[i], returns)
 
 
 def _has(arm, action, path):
@@ -162,7 +162,7 @@ def as_action(arm, names, fall):
     keep_pose(arm, names)
     action = new_action(arm)
     actions.assign(arm, action)
-    write_pose(arm, action, names, fall.frames, fall.worlds, fall.carriers, fall.first)
+    write_pose(arm, action, names, fall.frames, fall.worlds, fall.carriers, fall.first, returns=fall.back is not None)
     return action
 
 

@@ -249,7 +249,7 @@ class Simulates(Sinew):
         for arm, ragdoll in job.built:
             bodies.store(arm, ragdoll)
             examine(arm, ragdoll)
-        job.notes += simulation.overlaps(job)
+        job.notes += simulation.overlaps(job) + simulation.stretched(job)
         self.done(context, job)
         for note in job.notes:
             self.report({"WARNING"}, note)

@@ -70,7 +70,7 @@ def bake(context, arm):
         value = float(arm.pose.bones[name]["IK_FK"])
         frames = [float(first - 1), float(first)] + ([float(back)] if back is not None else [])
         actions.write(fcurve, frames, [value, 1.0] + ([value] if back is not None else []), "CONSTANT")
-    worst = _key(context, arm, action, pairs, goals, first, last)
+    worst = _key(context, arm, action, pairs, goals, first, last, back is not None)
     arm.sinew.made_action, arm.sinew.own_action, arm.sinew.keyed = made, own, "FK"
     context.scene.frame_set(at)
     return worst
@@ -86,7 +86,7 @@ def _back(arm, name):
     return None
 
 
-def _key(context, arm, action, pairs, goals, first, last):
+def _key(context, arm, action, pairs, goals, first, last, returns):
     rest = {c: arm.data.bones[d].matrix_local.inverted() @ arm.data.bones[c].matrix_local for c, d in pairs}
     rows = {c: [] for c, _ in pairs}
     own = {c: {what: tuple(getattr(arm.pose.bones[c], what)) for what in keys.CHANNELS} for c, _ in pairs}
@@ -117,5 +117,5 @@ def _key(context, arm, action, pairs, goals, first, last):
             channels += [("location", i, [place[i] for place, _ in kept]) for i in range(3)]
         for what, i, values in channels:
             fcurve = actions.curve(action, arm, keys.bone_path(control, what), i, control)
-            actions.insert(fcurve, numbers, values, own[control][what][i])
+            actions.insert(fcurve, numbers, values, own[control][what][i], returns)
     return worst

@@ -12,6 +12,8 @@ from .skeleton import SinewError
 
 # States in which the user's animation alone sets the pose.
 OWN = {"animated"}
+# Distance of a joint from its place in the rest pose at the hand-over that is worth a warning, metres.
+MOST_STRETCH = 0.03
 
 
 @dataclass
@@ -249,6 +251,31 @@ def overlaps(job):
         if began is not None:
             definition = json.loads(arm.sinew.definition)
             found += overlap.told(bpy.context.scene, arm, loaded.skeleton, definition, take.frames[began], job.first + began)
+    return found
+
+
+def stretched(job):
+    """Warnings about joints that the user's animation moves away from their parents, as scaled and stretched bones do: the bodies have the
+    lengths of the rest pose."""
+    found = []
+    for arm, loaded, take, baked in zip(job.arms, job.loaded, job.takes, job.baked):
+        began = next((i for i, state in enumerate(baked.states) if state not in OWN), None)
+        bodies = [b["bone"] for b in bodies_of(arm)]
+        if began is None:
+            continue
+        own, off = take.frames[began], {}
+        # Parents before children.
+        for n in [n for n in loaded.joints if n in bodies[1:]]:
+            p = loaded.parents[n]
+            if p is not None:
+                way = (own[p].inverted() @ own[n]).translation - (loaded.rest[p].inverted() @ loaded.rest[n]).translation
+                off[n] = way.length * loaded.unit
+        far = [n for n in off if off[n] > MOST_STRETCH]
+        if far:
+            found.append(
+                f"{arm.name} is stretched by up to {100 * max(off.values()):.0f} cm when it falls, and jumps into the lengths of its rest pose:"
+                f" {loaded.parents[far[0]]} or a bone above is scaled or moved. Apply the pose as rest pose, or remove the scale"
+            )
     return found
 
 

@@ -124,6 +124,17 @@ def an_overlap_at_the_hand_over_is_told():
 
 
 @case
+def a_scaled_bone_is_told():
+    arm, _ = fresh()
+    arm.animation_data_clear()
+    arm.pose.bones["torso_joint_3"].scale = (1.3, 1.3, 1.3)
+    settings(by="FRAME", handover=45, use_return=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    notes = report(arm)["notes"]
+    check(len(notes) == 1 and "stretched by up to 7 cm" in notes[0], f"{notes}")
+
+
+@case
 def a_run_without_a_build_keeps_its_ragdoll():
     for run in (bpy.ops.sinew.preview, bpy.ops.sinew.simulate):
         rigs.empty_scene()
@@ -540,6 +551,23 @@ def a_blend_begins_after_the_hand_over():
     settings(return_frame=50, return_blend=29)
     check(bpy.ops.sinew.simulate() == {"FINISHED"}, "the largest blend is simulated")
     check(report(arm)["handover"] == 20, f"it falls at {report(arm)['handover']}")
+
+
+@case
+def bones_without_keys_return():
+    arm, names = fresh()
+    arm.animation_data_clear()
+    bone = arm.pose.bones[5]
+    bone.rotation_mode = "XYZ"
+    for frame, angle in ((1, 0.0), (60, 0.5)):
+        bone.rotation_euler.x = angle
+        bone.keyframe_insert("rotation_euler", frame=frame)
+    own = posed(arm, names)
+    settings(by="FRAME", handover=20, use_return=True, return_frame=80, return_blend=1, keys="ACTION")
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it falls and returns")
+    back = posed(arm, names)
+    error = max(off(back[f], own[f], names) for f in range(80 - FIRST, len(own)))
+    check(error < 1e-4, f"after the return it is {error} m from its animation")
 
 
 @case
