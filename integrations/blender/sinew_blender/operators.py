@@ -269,7 +269,7 @@ class SINEW_OT_simulate(Simulates, bpy.types.Operator):
         for arm in job.arms:
             preview.clear(arm)
         verdicts = ", ".join(f"{arm.name} {baked.verdict}" for arm, baked in zip(job.arms, job.baked))
-        self.report({"INFO"}, f"{job.last - job.first + 1} frames as {', '.join(sorted(set(ways))).lower()}: {verdicts}")
+        self.report({"INFO"}, f"Simulated {job.last - job.first + 1} frames, keyed as {', '.join(sorted(set(ways))).lower()}: {verdicts}")
 
 
 class SINEW_OT_preview(Simulates, bpy.types.Operator):

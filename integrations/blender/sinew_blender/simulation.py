@@ -199,7 +199,9 @@ def drives(loaded, take, fps):
             if last.get(name, "KEYED") == mode:
                 continue
             last[name] = mode
-            out.append(sinew.Drive(mode.lower(), time=index / fps, bone=name))
+            # Bodies may lose their drives within a frame; they come back to the animation more slowly, without a jump.
+            fades = {} if mode == "KEYED" else {"half_life": 1.0 / fps}
+            out.append(sinew.Drive(mode.lower(), time=index / fps, bone=name, **fades))
     return out
 
 
