@@ -109,6 +109,7 @@ fn build(out: &Path) -> Result<PathBuf> {
     let mut bind = Command::new(binder);
     bind.args(["--target", "web", "--remove-name-section", "--remove-producers-section", "--out-dir"]);
     command::run(bind.arg(&wasm).arg(program))?;
+    name_init(&wasm.join("sinew_web.js"))?;
     let program = wasm.join("sinew_web_bg.wasm");
     types(&package, &tools)?;
     let packed = command::output(Command::new("npm").args(["pack", "--silent"]).current_dir(&package))?;
@@ -119,6 +120,23 @@ fn build(out: &Path) -> Result<PathBuf> {
     eprintln!("{}: the program is {:.2} MB after gzip", tarball.display(), bytes as f64 * 1e-6);
     ensure!(bytes < MOST_BYTES, "the program has {bytes} bytes after gzip, more than {MOST_BYTES}");
     Ok(tarball)
+}
+
+/// Makes calls before `init` fail with a message that names it; without this they read a property of `undefined`.
+fn name_init(binding: &Path) -> Result<()> {
+    const UNLOADED: &str = "const unloaded = new Proxy({}, {
+    get() { throw new Error('sinew-physics is not loaded: call `init` and wait for it'); },
+});
+let wasmModule, wasmInstance, wasm = unloaded;";
+    let mut text = fs::read_to_string(binding)?;
+    for (old, new) in [
+        ("let wasmModule, wasmInstance, wasm;", UNLOADED),
+        ("if (wasm !== undefined) return wasm;", "if (wasm !== unloaded) return wasm;"),
+    ] {
+        ensure!(text.contains(old), "{}: `{old}` is missing", binding.display());
+        text = text.replace(old, new);
+    }
+    Ok(fs::write(binding, text)?)
 }
 
 /// Checks the package's JavaScript, and writes its types.

@@ -38,9 +38,13 @@ impl World {
     }
 
     /// Takes `count` steps (1 by default) and shows the last state: for tests, servers and lockstep.
-    pub fn step(&self, count: Option<u32>) -> Outcome {
+    pub fn step(&self, count: Option<f64>) -> Outcome {
         self.inner.run(|inner| {
-            inner.step(count.unwrap_or(1));
+            let count = count.unwrap_or(1.0);
+            if !(0.0..=f64::from(u32::MAX)).contains(&count) || count.fract() != 0.0 {
+                return Err(Failure(format!("the number of steps must be whole and not negative, not {count}")));
+            }
+            inner.step(count as u32);
             Ok(())
         })
     }

@@ -2,6 +2,8 @@
 import assert from 'node:assert/strict';
 import { CharacterDef, World, init, mannequinGlb } from 'sinew-physics';
 
+assert.throws(() => new World(), /call `init` and wait for it/);
+assert.throws(() => mannequinGlb(), /call `init` and wait for it/);
 await init({ warm: false });
 const world = new World();
 const ground = world.addBody({ kind: 'static', shape: { type: 'halfSpace' } });
@@ -24,6 +26,8 @@ const WRONG = [
   [/two bodies/, () => world.addJoint({ type: 'ball', a: box, b: box, anchor: [0, 0, 0] })],
   [/axis must not be 0/, () => world.addJoint({ type: 'hinge', a: ground, b: box, anchor: [0, 0, 0], axis: [0, 0, 0] })],
   [/finite and not negative/, () => world.update(-1)],
+  [/whole and not negative, not -1/, () => world.step(-1)],
+  [/whole and not negative, not 0\.5/, () => world.step(0.5)],
   [/character/, () => world.removeBody(hero.bodies()[0])],
   [/no body is called 'tail'; there are hips/, () => hero.hit('tail', [0, 0, 1])],
   [/no clip is called 'fly'; there are walk/, () => hero.play('fly')],

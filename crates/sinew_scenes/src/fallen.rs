@@ -115,6 +115,7 @@ impl Script for Fallen {
     }
 
     fn after_step(&mut self, world: &mut World) {
+        self.directed.work += world.work().total();
         if let Some(ragdoll) = self.character.ragdoll().filter(|_| !self.directed.is_directed) {
             self.meter.after_step(world, ragdoll);
         }
@@ -136,6 +137,10 @@ impl Script for Fallen {
     }
 
     /// Returns the metrics with the thresholds of a drop test.
+    fn work_in(&self, _: &World) -> f32 {
+        self.directed.work
+    }
+
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let q = self.meter.quality();
         vec![

@@ -158,6 +158,7 @@ impl Staged {
 
 impl Script for Staged {
     fn after_step(&mut self, world: &mut World) {
+        self.directed.work += world.work().total();
         self.character.update(world);
         let is_up = self.character.state() == State::Animated;
         let part = match (self.was, is_up) {
@@ -194,6 +195,10 @@ impl Script for Staged {
         self.directed = Directed::load(bytes)?;
         self.show();
         Ok(())
+    }
+
+    fn work_in(&self, _: &World) -> f32 {
+        self.directed.work
     }
 
     fn metrics(&self, _: &World) -> Vec<Metric> {

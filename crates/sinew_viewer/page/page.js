@@ -215,5 +215,6 @@ if (isStill && onStage && !asked.has('scene')) {
   element('loading').hidden = true;
 } else {
   started();
-  if (!onStage) canvas.focus();
+  if (!onStage) canvas.focus({ preventScroll: true });
+  if (onStage && matchMedia('(pointer: coarse)').matches) element('hint').textContent = 'Tap to push him';
 }

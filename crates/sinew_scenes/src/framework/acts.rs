@@ -36,6 +36,8 @@ pub(crate) struct Directed {
     pub led: Option<Vec3>,
     /// True from the first instruction on.
     pub is_directed: bool,
+    /// Work of muscles since the start, J.
+    pub work: f32,
 }
 
 impl Directed {
@@ -97,13 +99,14 @@ impl Directed {
         out.u32(self.pending.map_or(0, |clip| clip + 1));
         out.u8(u8::from(self.led.is_some()));
         out.vec3(self.led.unwrap_or(Vec3::ZERO));
+        out.f32(self.work);
     }
 
     pub fn load(bytes: &mut Reader<'_>) -> Result<Self, ReadError> {
         let is_directed = bytes.u8()? != 0;
         let pending = bytes.u32()?.checked_sub(1);
         let (is_led, way) = (bytes.u8()? != 0, bytes.vec3()?);
-        Ok(Self { pending, led: is_led.then_some(way), is_directed })
+        Ok(Self { pending, led: is_led.then_some(way), is_directed, work: bytes.f32()? })
     }
 }
 

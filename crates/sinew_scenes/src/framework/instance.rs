@@ -246,7 +246,9 @@ impl Instance {
     /// If the bytes are not those of the same scene with the same settings.
     pub fn load(&mut self, bytes: &mut Reader<'_>) -> Result<(), LoadError> {
         self.world.load(bytes)?;
-        Ok(self.script.load(bytes)?)
+        self.script.load(bytes)?;
+        self.health.work_in = self.script.work_in(&self.world);
+        Ok(())
     }
 
     /// Takes all whole steps due after another `time`, as [`World::update`] does; the script runs for each.

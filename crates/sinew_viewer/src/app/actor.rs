@@ -53,7 +53,11 @@ pub(super) fn show(character: &Character, leads: bool, ui: &mut egui::Ui) -> Opt
                 pressed = Some(what);
             }
         }
-        if ui.selectable_label(leads, "Walk").on_hover_text("W A S D walk, with Shift run (G)").clicked() {
+        if ui
+            .add(egui::Button::selectable(leads, "Walk").frame_when_inactive(true))
+            .on_hover_text("W A S D walk, with Shift run (G)")
+            .clicked()
+        {
             pressed = Some(Pressed::Walk);
         }
     });

@@ -31,7 +31,11 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
             registry().iter().filter(|scene| matches(scene, &app.search)).collect();
         let mut chosen = if entered { found.first().copied() } else { None };
         let runs = app.tour.runs;
-        let label = if runs { "Stop" } else { "Run all scenes" };
+        let label = if runs {
+            format!("Stop ({} of {})", app.tour.count(), registry().len())
+        } else {
+            "Run all scenes".to_owned()
+        };
         if ui
             .small_button(label)
             .on_hover_text("Each to its end at full speed; ✔ meets its expectations")

@@ -165,9 +165,11 @@ fn figures(app: &App, ui: &mut egui::Ui) {
             (_, false) => style::FAINT,
         };
         ui.horizontal(|ui| {
-            ui.label(name).on_hover_text(metric.name);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.label(RichText::new(shown).monospace().color(color));
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    ui.add(egui::Label::new(name).truncate()).on_hover_text(metric.name);
+                });
             });
         });
         let beside = beside.iter().find(|it| it.name == metric.name).and_then(|it| it.value);

@@ -33,6 +33,8 @@ pub(super) fn apply(ctx: &egui::Context) {
         style.text_styles.insert(TextStyle::Monospace, FontId::monospace(12.5));
         // A panel that fades in delays reading, and a picture might be taken during the fade.
         style.animation_time = 0.0;
+        // Floating bars would cover values at the right edge.
+        style.spacing.scroll = egui::style::ScrollStyle::solid();
         style.spacing.item_spacing = egui::vec2(8.0, 5.0);
         style.spacing.button_padding = egui::vec2(8.0, 3.0);
         style.visuals.panel_fill = PANEL;

@@ -21,6 +21,11 @@ impl Tour {
         self.results.iter().find(|(it, _)| *it == name).map(|(_, is_met)| *is_met)
     }
 
+    /// Returns the number of scenes that have ended.
+    pub fn count(&self) -> usize {
+        self.results.len()
+    }
+
     /// Returns the next scene; `None` at the end.
     pub fn next(&self) -> Option<&'static Scene> {
         registry().get(self.results.len())

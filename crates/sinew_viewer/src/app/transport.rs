@@ -87,7 +87,9 @@ fn outcome(app: &mut App, ui: &mut egui::Ui) {
     {
         app.save_glb();
     }
-    if ui.button("Save recording").on_hover_text("What was done and what became of it").clicked() {
+    if app.session.recording().is_some()
+        && ui.button("Save recording").on_hover_text("What was done and what became of it").clicked()
+    {
         app.save_recording();
     }
 }

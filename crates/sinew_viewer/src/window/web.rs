@@ -152,7 +152,8 @@ pub(super) struct Host {
 impl Host {
     pub fn attributes(&self) -> WindowAttributes {
         let attributes = Window::default_attributes().with_canvas(Some(self.canvas.clone()));
-        attributes.with_prevent_default(!self.is_part)
+        // An active window takes the focus, to which the browser scrolls.
+        attributes.with_prevent_default(!self.is_part).with_active(!self.is_part)
     }
 
     /// Returns the graphics interfaces that the canvas may use.
