@@ -146,7 +146,7 @@ export class Sinew extends EventDispatcher {
    */
   character(gltf, bytes, options = {}) {
     const character = new SinewCharacter(this.world, gltf, bytes, options);
-    this.#characters.add(character);
+    this.#keep(this.#characters, character);
     character.write();
     return character;
   }
@@ -158,7 +158,7 @@ export class Sinew extends EventDispatcher {
    */
   body(object, options = {}) {
     const body = new SinewBody(this.world, object, options);
-    this.#bodies.add(body);
+    this.#keep(this.#bodies, body);
     this.#owners.set(body.id, { object: body });
     return body;
   }
@@ -179,7 +179,7 @@ export class Sinew extends EventDispatcher {
    */
   instances(object, options = {}) {
     const instances = new SinewInstances(this.world, object, options);
-    this.#instances.add(instances);
+    this.#keep(this.#instances, instances);
     instances.ids.forEach((id, instance) => this.#owners.set(id, { instances, instance }));
     return instances;
   }
@@ -227,7 +227,7 @@ export class Sinew extends EventDispatcher {
 
   /** @param {SinewGeometry} geometry */
   #geometry(geometry) {
-    this.#geometries.add(geometry);
+    this.#keep(this.#geometries, geometry);
     return geometry;
   }
 
@@ -258,7 +258,7 @@ export class Sinew extends EventDispatcher {
    */
   drag(camera, element, options = {}) {
     const drag = new SinewDrag(this, camera, element, options);
-    this.#drags.add(drag);
+    this.#keep(this.#drags, drag);
     return drag;
   }
 
@@ -273,11 +273,23 @@ export class Sinew extends EventDispatcher {
    * @param {SinewBody | SinewInstances | SinewCharacter | SinewGeometry | SinewDrag} member
    */
   remove(member) {
-    const sets = /** @type {Set<any>[]} */ ([this.#bodies, this.#instances, this.#characters, this.#geometries, this.#drags]);
-    if (!sets.some((set) => set.delete(member))) return;
-    if (member instanceof SinewBody) this.#owners.delete(member.id);
-    if (member instanceof SinewInstances) member.ids.forEach((id) => this.#owners.delete(id));
     member.dispose();
+  }
+
+  /**
+   * Keeps an object until it is removed from this world or disposes itself; afterwards both do nothing.
+   * @param {Set<any>} set
+   * @param {SinewBody | SinewInstances | SinewCharacter | SinewGeometry | SinewDrag} member
+   */
+  #keep(set, member) {
+    set.add(member);
+    const free = member.dispose.bind(member);
+    member.dispose = () => {
+      if (!set.delete(member)) return;
+      if (member instanceof SinewBody) this.#owners.delete(member.id);
+      if (member instanceof SinewInstances) member.ids.forEach((id) => this.#owners.delete(id));
+      free();
+    };
   }
 
   /** Frees the world with all its objects; models and meshes stay in place. */
