@@ -148,14 +148,19 @@ fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
         let [x, y] = at(dot);
         let radius = if dot.engine == "Sinew" { 8.0 } else { 6.0 };
         _ = writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{}\"/>", dot.color);
-        // A name that would overlap another moves down.
         let is_right = x > 0.5 * width;
-        let mut at = y + 4.0;
-        while labels.iter().any(|[side, other]| (side - x).abs() < 130.0 && (other - at).abs() < LINE) {
-            at += 2.0;
-        }
-        labels.push([x, at]);
         let (anchor, shift) = if is_right { ("end", -12.0) } else { ("start", 13.0) };
+        let at = free_line(&labels, [x, y + 4.0]);
+        labels.push([x, at]);
+        if (at - y - 4.0).abs() > 0.5 * LINE {
+            _ = writeln!(
+                out,
+                "<path d=\"M{x:.1} {y:.1}L{:.1} {:.1}\" stroke=\"{}\" opacity=\"0.6\"/>",
+                x + 0.8 * shift,
+                at - 4.0,
+                dot.color
+            );
+        }
         _ = writeln!(
             out,
             "<text x=\"{:.1}\" y=\"{at:.1}\" fill=\"{}\" text-anchor=\"{anchor}\">{}</text>",
@@ -165,6 +170,14 @@ fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
         );
     }
     out + "</svg>"
+}
+
+/// Returns the line of a name beside a dot: the nearest one, above or below, that overlaps no other name.
+fn free_line(labels: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
+    let is_free =
+        |at: &f64| labels.iter().all(|[side, other]| (side - x).abs() >= 130.0 || (other - at).abs() >= LINE);
+    let lines = (0..).flat_map(|k| [y + 2.0 * f64::from(k), y - 2.0 * f64::from(k)]);
+    lines.take(200).find(is_free).unwrap_or(y)
 }
 
 /// Adds lines at powers of ten with their names, and the titles of the axes.
