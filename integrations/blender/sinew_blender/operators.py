@@ -355,8 +355,9 @@ class SINEW_OT_bake_fk(Sinew, bpy.types.Operator):
     def act(self, context):
         from . import rigify
 
-        worst = rigify.bake(context, active_armature(context))
-        self.report({"INFO"}, f"Deform bones are within {1e3 * worst * sk.unit_of_scene():.1f} mm of the simulation")
+        worst = rigify.bake(context, active_armature(context)) * sk.unit_of_scene()
+        level = {"INFO"} if worst < rigify.CLOSE else {"WARNING"}
+        self.report(level, f"Deform bones are within {1e3 * worst:.1f} mm of the simulation")
 
 
 class SINEW_OT_export(Sinew, bpy.types.Operator):

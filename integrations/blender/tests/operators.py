@@ -459,6 +459,40 @@ def fk_controls_of_rigify_take_the_fall():
 
 
 @case
+def fk_controls_of_a_rig_with_a_face_take_the_fall():
+    arm, names = fresh(rigs.rigify_face)
+    first, last, back = 25, 56, 50
+    settings(by="FRAME", handover=30, use_return=True, return_frame=back, return_blend=8, use_range=True, frame_start=first, frame_end=last)
+    own = posed(arm, names, first, last)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    proxy = posed(arm, names, first, last)
+    words = said(bpy.ops.sinew.bake_fk)
+    keyed = posed(arm, names, first, last)
+    error = max(off(a, b, names) for a, b in zip(keyed, proxy))
+    check(error < 0.05, f"a bone is {error} m from the proxy")
+    sizes = [abs(length - 1.0) for frame in keyed for n in names for length in frame[n].to_scale()]
+    check(max(sizes) < 0.5, f"a bone is scaled by {max(sizes)}")
+    after = max(off(keyed[f - first], own[f - first], names) for f in range(back, last + 1))
+    check(after < 1e-4, f"after the return it is {after} m from its animation")
+    check("Info: Deform bones are within" in words, words)
+    print(f"  FK controls with a face: within {1e3 * error:.1f} mm")
+
+
+@case
+def a_bake_that_is_far_off_is_a_warning():
+    arm, names = fresh(rigs.rigify_human)
+    settings(by="FRAME", handover=10, use_return=False, use_range=True, frame_start=5, frame_end=14)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    # A control that a constraint holds cannot follow.
+    held = arm.pose.bones["upper_arm_fk.L"].constraints.new("LIMIT_LOCATION")
+    held.use_min_x = held.use_max_x = True
+    held.min_x = held.max_x = 0.5
+    held.owner_space = "LOCAL"
+    words = said(bpy.ops.sinew.bake_fk)
+    check("Warning: Deform bones are within" in words, words)
+
+
+@case
 def files_are_written():
     arm, _ = fresh()
     with tempfile.TemporaryDirectory() as folder:
