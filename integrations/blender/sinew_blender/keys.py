@@ -115,28 +115,40 @@ def restore_pose(arm):
             setattr(bone, what, value)
 
 
+def is_in_place(arm):
+    """True if the Action of a simulation is the armature's, or was unlinked without another in its place."""
+    data, made = arm.animation_data, arm.sinew.made_action
+    if arm.sinew.keyed not in {"ACTION", "PROXY", "FK"}:
+        return False
+    if data is None or data.action == made:
+        return True
+    # A take that the user pushed down stays.
+    return data.action is None and all(strip.action != made for track in data.nla_tracks for strip in track.strips)
+
+
 def put_back(arm):
     """Restores the user's own Action, or none if there was none; channels without curves get their stored values."""
     restore_pose(arm)
     data = arm.animation_data
-    if arm.sinew.own_action is None:
+    if arm.sinew.own_action is None and data is not None:
         data.action = None
-    else:
+    elif arm.sinew.own_action is not None:
         actions.assign(arm, arm.sinew.own_action)
 
 
 def clear(arm):
     """Removes the keys of an earlier simulation and restores the user's animation."""
-    made, data = arm.sinew.made_action, arm.animation_data
+    made = arm.sinew.made_action
     remove_proxy(arm)
+    if is_in_place(arm):
+        put_back(arm)
+    data = arm.animation_data
     if data is not None:
         tracks = [t for t in data.nla_tracks if t.name == TRACK]
         for track in tracks:
             data.nla_tracks.remove(track)
         if tracks:
             restore_pose(arm)
-        if made is not None and data.action == made:
-            put_back(arm)
         take_from_track(arm, data)
     arm.sinew.own_action = arm.sinew.made_action = None
     arm.sinew.own_pose = arm.sinew.own_track = ""

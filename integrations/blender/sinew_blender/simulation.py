@@ -160,20 +160,21 @@ class own_animation:
     """Temporarily restores the user's animation without the results of an earlier simulation, for sampling."""
 
     def __init__(self, arm):
-        self.arm, self.muted, self.tracks, self.action = arm, [], [], None
+        self.arm, self.muted, self.tracks, self.is_swapped, self.action = arm, [], [], keys.is_in_place(arm), None
 
     def __enter__(self):
-        arm, data = self.arm, self.arm.animation_data
+        arm = self.arm
         for bone in arm.pose.bones:
             for c in bone.constraints:
                 if c.name == keys.CONSTRAINT and not c.mute:
                     c.mute = True
                     self.muted.append((bone.name, c.name))
+        if self.is_swapped:
+            self.action = arm.animation_data.action if arm.animation_data is not None else None
+            keys.put_back(arm)
+        data = arm.animation_data
         if data is None:
             return self
-        if data.action is not None and data.action == arm.sinew.made_action:
-            self.action = data.action
-            keys.put_back(arm)
         for track in data.nla_tracks:
             if track.name == keys.TRACK and not track.mute:
                 track.mute = True
@@ -187,7 +188,7 @@ class own_animation:
             self.arm.pose.bones[bone].constraints[name].mute = False
         for track in self.tracks:
             track.mute = False
-        if self.action is not None:
+        if self.is_swapped:
             actions.assign(self.arm, self.action)
 
 

@@ -604,6 +604,49 @@ def bones_without_keys_return():
     check(error < 1e-4, f"after the return it is {error} m from its animation")
 
 
+def in_edit_mode(arm, change):
+    bpy.ops.object.mode_set(mode="EDIT")
+    change(arm.data.edit_bones)
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+@case
+def a_scale_by_axes_returns():
+    rigs.empty_scene()
+    arm = rigs.cesium_man()
+    arm.animation_data_clear()
+    arm.scale = (1.0, 1.3, 0.8)
+    bpy.context.view_layer.update()
+    check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built")
+    names = addon().skeleton.skeleton_of(arm).names
+    own = posed(arm, names)
+    settings(by="FRAME", handover=30, use_return=True, return_frame=80, return_blend=15, keys="ACTION")
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it falls and returns")
+    back = posed(arm, names)
+    error = max(off(back[f], own[f], names) for f in range(80 - FIRST, len(own)))
+    check(error < 1e-4, f"after the return it is {error} m from its animation")
+
+
+@case
+def a_clear_restores_an_unlinked_action():
+    arm, names = fresh()
+    own, action = posed(arm, names), arm.animation_data.action
+    settings(by="FRAME", handover=45, use_return=False, keys="ACTION")
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    arm.animation_data.action = None
+    check(bpy.ops.sinew.clear() == {"FINISHED"}, "it is cleared")
+    check(arm.animation_data.action == action, f"the Action is {arm.animation_data.action}")
+    check(max(off(a, b, names) for a, b in zip(posed(arm, names), own)) == 0.0, "it moves as before")
+    bpy.ops.sinew.simulate()
+    keyed = posed(arm, names)
+    arm.animation_data.action = None
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated from its own Action")
+    check(max(off(a, b, names) for a, b in zip(posed(arm, names), keyed)) == 0.0, "and falls as before")
+    other = bpy.data.actions.new("Other")
+    arm.animation_data.action = other
+    check(bpy.ops.sinew.clear() == {"FINISHED"} and arm.animation_data.action == other, "another Action stays")
+
+
 @case
 def what_cannot_be_is_one_line():
     rigs.empty_scene()
