@@ -82,7 +82,7 @@ class SINEW_OT_forget(Sinew, bpy.types.Operator):
         for arm in selected_armatures(context):
             keys.clear(arm)
             preview.clear(arm)
-            for name in ("definition", "fitted", "place", "report"):
+            for name in ("definition", "fitted", "place", "rest", "report"):
                 setattr(arm.sinew, name, "")
             arm.sinew.findings.clear()
             bodies.show(arm)
@@ -124,7 +124,9 @@ class SINEW_OT_doctor(Sinew, bpy.types.Operator):
 
     def act(self, context):
         arm = active_armature(context)
-        count = examine(arm, bridge.ragdoll(arm))
+        count = examine(arm, bridge.valid(arm))
+        for note in bodies.changed(arm):
+            self.report({"WARNING"}, note)
         self.report({"INFO"}, counted(count, "finding", "findings"))
 
 
@@ -162,7 +164,7 @@ class SINEW_OT_cure(Sinew, bpy.types.Operator):
 
     def act(self, context):
         arm = active_armature(context)
-        cured, report = bridge.asked(bridge.ragdoll(arm).cured)
+        cured, report = bridge.asked(bridge.valid(arm).cured)
         arm.sinew.definition = cured.to_json()
         bodies.show(arm)
         left = examine(arm, cured)
@@ -383,11 +385,7 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
 
     def act(self, context):
         arm = active_armature(context)
-        path = bpy.path.abspath(self.filepath)
-        if not os.path.basename(path):
-            raise SinewError("Give the file a name: filepath has none")
-        is_text = self.format == "USD" and path.endswith(".usda")
-        path = path if is_text or path.endswith(self.ENDS[self.format]) else path + self.ENDS[self.format]
+        path = self.path()
         try:
             if self.format == "USD":
                 self.write_usd(context, arm, path)
@@ -398,14 +396,25 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
                 fps = context.scene.render.fps / context.scene.render.fps_base
                 data = bridge.asked(bridge.load(arm, take.frames, fps).file.glb)
             elif self.format == "MJCF":
-                data = bridge.asked(bridge.ragdoll(arm).to_mjcf, arm.name)[0].encode()
+                data = bridge.asked(bridge.valid(arm).to_mjcf, arm.name)[0].encode()
             else:
-                data = bridge.ragdoll(arm).to_json().encode()
+                data = bridge.valid(arm).to_json().encode()
             with open(path, "wb") as file:
                 file.write(data)
         except OSError as error:
             raise SinewError(f"{path}: {error.strerror or error}") from error
         self.report({"INFO"}, f"Wrote {path}")
+
+    def path(self):
+        """The path to write, with the ending of the format."""
+        if self.filepath.startswith("//") and not bpy.data.filepath:
+            raise SinewError("Save the .blend file first, or give a full path: // is the folder of the .blend file")
+        path, end = bpy.path.abspath(self.filepath), self.ENDS[self.format]
+        if not os.path.basename(path):
+            raise SinewError("Give the file a name: filepath has none")
+        if path.endswith(end) or self.format == "USD" and path.endswith(".usda"):
+            return path
+        return (path.removesuffix(".json") if self.format == "SINEW" else path) + end
 
     def write_usd(self, context, arm, path):
         from sinew import usd

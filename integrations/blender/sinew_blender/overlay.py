@@ -129,7 +129,9 @@ def lines_of(arm, chosen):
     """Colours and line segments in the world, for the current pose of the armature."""
     settings, out = arm.sinew, {BODY: [], CHOSEN: [], LIMIT: [], TWIST: []}
     for name, (body, carrier, swing, twist, _, _) in pieces(arm).items():
-        bone = arm.pose.bones[name]
+        bone = arm.pose.bones.get(name)
+        if bone is None or carrier not in {None, *arm.pose.bones.keys()}:
+            continue
         if settings.show_bodies:
             at = arm.matrix_world @ bone.matrix
             out[CHOSEN if name in chosen else BODY].extend(at @ p for p in body)
@@ -185,8 +187,9 @@ def draw_masses():
         if not arm.sinew.show_masses:
             continue
         for name, (_, _, _, _, center, mass) in pieces(arm).items():
-            at = arm.matrix_world @ arm.pose.bones[name].matrix @ center
-            where = location_3d_to_region_2d(context.region, context.region_data, at)
+            bone = arm.pose.bones.get(name)
+            at = arm.matrix_world @ bone.matrix @ center if bone is not None else None
+            where = location_3d_to_region_2d(context.region, context.region_data, at) if at is not None else None
             if where is not None:
                 blf.position(0, where.x, where.y, 0)
                 blf.color(0, 1, 1, 1, 1)

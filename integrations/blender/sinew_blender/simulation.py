@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from . import actions, bridge, keys, overlap, stage
+from . import actions, bodies, bridge, keys, overlap, stage
 from . import skeleton as sk
 from .skeleton import SinewError
 
@@ -90,13 +90,15 @@ def preparing(context, arms):
         raise SinewError(f"The hand-over, frame {at}, is outside of the range {first} to {last}")
     if settings.use_return and not max(at, first) < settings.return_frame <= last:
         raise SinewError(f"The return, frame {settings.return_frame}, is not between hand-over and end")
+    check_pose(scene, arms)
     loaded, takes, actors, units, built, notes = [], [], [], [], [], []
     for arm in arms:
         with own_animation(arm):
             take = yield from sk.sampling(arm, sk.skeleton_of(arm), first, last)
         one = bridge.load(arm, take.frames, fps)
         if arm.sinew.definition:
-            ragdoll = bridge.ragdoll(arm)
+            ragdoll = bridge.valid(arm)
+            notes += bodies.changed(arm)
         else:
             ragdoll = bridge.build(arm)
             built.append((arm, ragdoll))
@@ -133,6 +135,17 @@ def preparing(context, arms):
         "gravity": gravity(scene),
     }
     return Job(arms, loaded, takes, actors, world, first, last, fps, built, notes)
+
+
+def check_pose(scene, arms):
+    """Refuses what keeps an animation, or its keys, from their frames."""
+    if scene.render.frame_map_old != scene.render.frame_map_new:
+        raise SinewError("Time Stretching is on: set Old and New to 100 (Output properties, Frame Range)")
+    for arm in arms:
+        if arm.data.pose_position == "REST":
+            raise SinewError(f"{arm.name} is in Rest Position: choose Pose Position (armature properties, Pose)")
+        if arm.sinew.definition:
+            bridge.valid(arm)
 
 
 def check_return(settings, first, fps, given):

@@ -648,6 +648,78 @@ def a_clear_restores_an_unlinked_action():
 
 
 @case
+def a_bone_that_is_gone_asks_for_a_build():
+    for change in (lambda bones: bones.remove(bones["leg_joint_L_3"]), lambda bones: setattr(bones["leg_joint_L_3"], "name", "shin")):
+        arm, _ = fresh()
+        settings(by="FRAME", handover=45, use_return=False)
+        addon().overlay.lines_of(arm, set())
+        in_edit_mode(arm, change)
+        check(addon().overlay.lines_of(arm, {"torso_joint_3"}), "the other bodies are drawn")
+        for run in (bpy.ops.sinew.simulate, bpy.ops.sinew.doctor, bpy.ops.sinew.cure):
+            refused(run, "no bone leg_joint_L_3 any more: build its ragdoll again")
+        with tempfile.TemporaryDirectory() as folder:
+            refused(bpy.ops.sinew.export, "build its ragdoll again", filepath=os.path.join(folder, "it"), format="SINEW")
+        arm.pose.bones["torso_joint_3"].sinew.mass = 9.0
+        check(bpy.ops.sinew.build() == {"FINISHED"} and bpy.ops.sinew.simulate() == {"FINISHED"}, "built again, it falls")
+
+
+@case
+def bones_that_moved_ask_for_a_build():
+    def move(bones):
+        bones["Skeleton_arm_joint_L__2_"].head.x += 0.1
+
+    def reparent(bones):
+        bones["leg_joint_L_3"].parent = bones["leg_joint_L_1"]
+
+    for change, bone in ((move, "Skeleton_arm_joint_L__2_"), (reparent, "leg_joint_L_3")):
+        arm, _ = fresh()
+        settings(by="FRAME", handover=45, use_return=False)
+        check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["notes"] == [], f"{report(arm)['notes']}")
+        in_edit_mode(arm, change)
+        check("build its ragdoll again" in said(bpy.ops.sinew.doctor), "the doctor tells")
+        check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+        notes = report(arm)["notes"]
+        check(any(bone in note and "build its ragdoll again" in note for note in notes), f"{notes}")
+        bpy.ops.sinew.clear()
+        bpy.ops.sinew.build()
+        check(bpy.ops.sinew.simulate() == {"FINISHED"} and not any("build its" in note for note in report(arm)["notes"]), "built again")
+
+
+@case
+def mistakes_in_settings_are_named():
+    arm, _ = fresh()
+    settings(by="FRAME", handover=45, use_return=False)
+    arm.data.pose_position = "REST"
+    refused(bpy.ops.sinew.simulate, "is in Rest Position")
+    arm.data.pose_position = "POSE"
+    bpy.context.scene.render.frame_map_new = 200
+    refused(bpy.ops.sinew.simulate, "Time Stretching")
+    bpy.context.scene.render.frame_map_new = 100
+    arm.data.bones.active = arm.data.bones["torso_joint_3"]
+    bpy.ops.sinew.add_hit(impulse=0)
+    refused(bpy.ops.sinew.simulate, "Error: Hit torso_joint_3 has an impulse of 0")
+    hit = bpy.data.objects["Hit torso_joint_3"]
+    hit.sinew_hit.bone = ""
+    refused(bpy.ops.sinew.simulate, "Error: Hit torso_joint_3 has no bone")
+    bpy.data.objects.remove(hit)
+    arm.pose.bones["leg_joint_L_1"].sinew.role = "nonsense"
+    refused(bpy.ops.sinew.build, "leg_joint_L_1: no role `nonsense`")
+    arm.pose.bones["leg_joint_L_1"].sinew.role = ""
+    arm.sinew.height = 1e9
+    check(arm.sinew.height == 1000, f"the height is {arm.sinew.height}")
+    check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built at that height")
+
+
+@case
+def files_have_the_names_that_were_given():
+    arm, _ = fresh()
+    refused(bpy.ops.sinew.export, "Save the .blend file first", filepath="//it.xml", format="MJCF")
+    with tempfile.TemporaryDirectory() as folder:
+        check(bpy.ops.sinew.export(filepath=os.path.join(folder, "x.json"), format="SINEW") == {"FINISHED"}, "it is written")
+        check(os.listdir(folder) == ["x.sinew.json"], f"{os.listdir(folder)}")
+
+
+@case
 def what_cannot_be_is_one_line():
     rigs.empty_scene()
     arm = rigs.cesium_man()
