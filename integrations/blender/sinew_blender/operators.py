@@ -251,7 +251,7 @@ class Simulates(Sinew):
         for arm, ragdoll in job.built:
             bodies.store(arm, ragdoll)
             examine(arm, ragdoll)
-        job.notes += simulation.overlaps(job) + simulation.stretched(job)
+        job.notes += simulation.overlaps(job) + simulation.stretched(job) + simulation.falls_on(job) + simulation.blown(job)
         self.done(context, job)
         for note in job.notes:
             self.report({"WARNING"}, note)
@@ -270,7 +270,7 @@ class SINEW_OT_simulate(Simulates, bpy.types.Operator):
         context.scene.frame_set(at)
         for arm in job.arms:
             preview.clear(arm)
-        verdicts = ", ".join(f"{arm.name} {baked.verdict}" for arm, baked in zip(job.arms, job.baked))
+        verdicts = ", ".join(f"{arm.name} {simulation.judged(baked)[0]}" for arm, baked in zip(job.arms, job.baked))
         self.report({"INFO"}, f"Simulated {job.last - job.first + 1} frames, keyed as {', '.join(sorted(set(ways))).lower()}: {verdicts}")
 
 

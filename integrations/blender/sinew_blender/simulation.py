@@ -12,6 +12,8 @@ from .skeleton import SinewError
 
 # States in which the user's animation alone sets the pose.
 OWN = {"animated"}
+# Begin of the reason for a fall whose energy grows.
+ENERGY = "energy gain"
 # Distance of a joint from its place in the rest pose at the hand-over that is worth a warning, metres.
 MOST_STRETCH = 0.03
 
@@ -295,6 +297,36 @@ def stretched(job):
     return found
 
 
+def falls_on(job):
+    """Warnings about characters that fall by more than their height and touch nothing."""
+    found = []
+    for arm, baked in zip(job.arms, job.baked):
+        began = next((i for i, state in enumerate(baked.states) if state not in OWN), None)
+        if began is None or any(event == "touched" for _, event in baked.events):
+            continue
+        heights = baked.positions[began:, 0, 1]
+        if heights[0] - heights.min() > json.loads(arm.sinew.definition)["height"]:
+            found.append(
+                f"{arm.name} falls to the end and touches nothing: enable Ground, or collide with what is below it."
+                " Faces collide on the side of their normals"
+            )
+    return found
+
+
+def judged(baked):
+    """Verdict and reasons of a fall. Wind adds energy: it is no reason there."""
+    if bpy.context.scene.sinew.wind.length == 0 or baked.verdict != "usable":
+        return baked.verdict, list(baked.reasons)
+    left = [reason for reason in baked.reasons if not reason.startswith(ENERGY)]
+    return ("usable" if left else "good"), left
+
+
+def blown(job):
+    """Notes about energy that the verdict leaves out."""
+    scored = [(arm, baked) for arm, baked in zip(job.arms, job.baked) if len(judged(baked)[1]) < len(baked.reasons)]
+    return [f"{arm.name}: wind adds energy to the fall, which the verdict leaves out" for arm, _ in scored]
+
+
 def write(job, how):
     """Keys for all characters; returns how each was keyed."""
     done = []
@@ -326,13 +358,14 @@ def report(arm, loaded, take, baked, fall, way):
     for i in range(fall.first - take.first):
         for n in loaded.skeleton.names:
             off = max(off, (frames[i][n].translation - take.frames[i][n].translation).length * unit)
+    verdict, reasons = judged(baked)
     return {
         "keyed": way,
         "frames": len(fall.frames),
         "handover": fall.first,
         "before_handover_mm": round(off, 4),
-        "verdict": baked.verdict,
-        "reasons": list(baked.reasons),
+        "verdict": verdict,
+        "reasons": reasons,
         "joint_gap_mm": 1e3 * baked.quality["joint_gap_max_m"],
         "events": [[round(t, 3), e] for t, e in baked.events],
         "hash": f"{baked.hash:016x}",

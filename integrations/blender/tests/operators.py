@@ -720,6 +720,27 @@ def files_have_the_names_that_were_given():
 
 
 @case
+def wind_is_no_reason_for_a_worse_verdict():
+    arm, _ = fresh()
+    settings(by="FRAME", handover=45, use_return=False, wind=(0, 30, 0))
+    words = said(bpy.ops.sinew.simulate)
+    told = report(arm)
+    check(told["verdict"] == "good" and told["reasons"] == [], f"{told['verdict']}: {told['reasons']}")
+    check("Armature good" in words and any("wind adds energy" in note for note in told["notes"]), f"{words} {told['notes']}")
+
+
+@case
+def a_fall_into_the_void_is_told():
+    arm, _ = fresh()
+    settings(by="FRAME", handover=45, use_return=False, ground=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    notes = report(arm)["notes"]
+    check(len(notes) == 1 and "Armature falls to the end and touches nothing" in notes[0], f"{notes}")
+    settings(ground=True)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["notes"] == [], f"{report(arm)['notes']}")
+
+
+@case
 def what_cannot_be_is_one_line():
     rigs.empty_scene()
     arm = rigs.cesium_man()
