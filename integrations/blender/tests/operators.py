@@ -8,7 +8,7 @@ import tempfile
 
 import bpy
 import numpy as np
-from mathutils import Matrix
+from mathutils import Matrix, Vector
 
 import installed
 import rigs
@@ -738,6 +738,25 @@ def a_fall_into_the_void_is_told():
     check(len(notes) == 1 and "Armature falls to the end and touches nothing" in notes[0], f"{notes}")
     settings(ground=True)
     check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["notes"] == [], f"{report(arm)['notes']}")
+
+
+@case
+def a_hit_is_drawn_and_findings_are_counted():
+    arm, _ = fresh()
+    arm.data.bones.active = arm.data.bones["torso_joint_3"]
+    bpy.ops.sinew.add_hit()
+    hit = bpy.data.objects["Hit torso_joint_3"]
+    bpy.context.view_layer.update()
+    lines = addon().overlay.hit_lines(hit)
+    tip = hit.matrix_world @ Vector((0, 0, hit.empty_display_size))
+    check((lines[0] - hit.matrix_world.translation).length < 1e-6 and (lines[1] - tip).length < 1e-6, f"its shaft is {lines[:2]}")
+    check(all((p - tip).length <= hit.empty_display_size + 1e-6 for p in lines), "and no line is longer than it")
+    hit.sinew_hit.enabled = False
+    check(addon().overlay.hit_lines(hit) == [], "disabled, it is Blender's own arrow")
+    arm.pose.bones["torso_joint_3"].sinew.mass = 900.0
+    bpy.ops.sinew.doctor()
+    counted = addon().panels.findings_of(bpy.context)
+    check(counted == str(len(arm.sinew.findings)) != "0", f"the header has {counted}")
 
 
 @case
