@@ -1,10 +1,12 @@
 """Samples the user's animation, simulates, and writes keys."""
 
 import json
+import math
 import threading
 from dataclasses import dataclass, field
 
 import bpy
+from mathutils import Vector
 
 from . import actions, bodies, bridge, keys, overlap, stage
 from . import skeleton as sk
@@ -298,16 +300,15 @@ def stretched(job):
 
 
 def falls_on(job):
-    """Warnings about characters that fall by more than their height and touch nothing."""
-    found = []
+    """Warnings about characters that at the end, or before the return, are faster than after a fall by their own height."""
+    settings, found = bpy.context.scene.sinew, []
+    last = max(settings.return_frame - settings.return_blend, job.first + 1) if settings.use_return else job.last
     for arm, baked in zip(job.arms, job.baked):
-        began = next((i for i, state in enumerate(baked.states) if state not in OWN), None)
-        if began is None or any(event == "touched" for _, event in baked.events):
-            continue
-        heights = baked.positions[began:, 0, 1]
-        if heights[0] - heights.min() > json.loads(arm.sinew.definition)["height"]:
+        height = json.loads(arm.sinew.definition)["height"]
+        before, end = baked.positions[last - job.first - 1 : last - job.first + 1, 0, 1]
+        if (before - end) * job.fps > math.sqrt(2.0 * Vector(job.stage["gravity"]).length * height) > 0.0:
             found.append(
-                f"{arm.name} falls to the end and touches nothing: enable Ground, or collide with what is below it."
+                f"{arm.name} still falls at frame {last}: enable Ground, or collide with what is below it."
                 " Faces collide on the side of their normals"
             )
     return found

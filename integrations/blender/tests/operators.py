@@ -735,7 +735,18 @@ def a_fall_into_the_void_is_told():
     settings(by="FRAME", handover=45, use_return=False, ground=False)
     check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
     notes = report(arm)["notes"]
-    check(len(notes) == 1 and "Armature falls to the end and touches nothing" in notes[0], f"{notes}")
+    check(len(notes) == 1 and "Armature still falls at frame 150" in notes[0], f"{notes}")
+    # A floor seen from below, which the feet touch.
+    bpy.ops.mesh.primitive_plane_add(size=10)
+    floor = bpy.context.object
+    floor.data.flip_normals()
+    floor.sinew_body.collides = True
+    rigs.activate(arm)
+    settings(use_return=True, return_frame=130, return_blend=20)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    notes = report(arm)["notes"]
+    check(any("Armature still falls at frame 110" in note for note in notes), f"{notes}")
+    floor.data.flip_normals()
     settings(ground=True)
     check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["notes"] == [], f"{report(arm)['notes']}")
 
