@@ -292,9 +292,12 @@ def stretched(job):
                 off[n] = way.length * loaded.unit
         far = [n for n in off if off[n] > MOST_STRETCH]
         if far:
+            cause = f"{loaded.parents[far[0]]} or a bone above is scaled or moved. Apply the pose as rest pose, or remove the scale"
+            scale = arm.matrix_world.to_scale()
+            if max(scale) > (1.0 + bridge.SAME_SCALE) * min(scale):
+                cause = "its object's scale differs by axes. Apply it (Ctrl+A), and build again"
             found.append(
-                f"{arm.name} is stretched by up to {100 * max(off.values()):.0f} cm when it falls, and jumps into the lengths of its rest pose:"
-                f" {loaded.parents[far[0]]} or a bone above is scaled or moved. Apply the pose as rest pose, or remove the scale"
+                f"{arm.name} is stretched by up to {100 * max(off.values()):.0f} cm when it falls, and changes to the lengths of its rest pose: {cause}"
             )
     return found
 

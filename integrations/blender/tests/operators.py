@@ -132,6 +132,14 @@ def a_scaled_bone_is_told():
     check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
     notes = report(arm)["notes"]
     check(len(notes) == 1 and "stretched by up to 7 cm" in notes[0], f"{notes}")
+    rigs.empty_scene()
+    arm = rigs.cesium_man()
+    arm.scale = (1.0, 1.3, 0.8)
+    bpy.context.view_layer.update()
+    settings(by="FRAME", handover=45, use_return=False)
+    check(bpy.ops.sinew.build() == {"FINISHED"} and bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    notes = report(arm)["notes"]
+    check(len(notes) == 1 and "object's scale differs by axes" in notes[0], f"{notes}")
 
 
 @case
