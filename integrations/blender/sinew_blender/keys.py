@@ -11,6 +11,8 @@ CONSTRAINT = "Sinew"
 PROXY = "Sinew "
 CHANNELS = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
 TRACK = "Sinew"
+# Rigify's switch from IK (0) to FK (1).
+SWITCH = "IK_FK"
 # Largest distance from the rest pose for which a location gets no keys, in units of Blender, bone space.
 STILL = 1e-6
 
@@ -104,7 +106,7 @@ def keep_pose(arm, names):
     kept = {}
     for n in names:
         bone = arm.pose.bones[n]
-        kept[n] = [list(getattr(bone, what)) for what in CHANNELS]
+        kept[n] = [list(getattr(bone, what)) for what in CHANNELS] + [bone.get(SWITCH)]
     arm.sinew.own_pose = json.dumps(kept)
 
 
@@ -113,6 +115,8 @@ def restore_pose(arm):
         bone = arm.pose.bones.get(n)
         for what, value in zip(CHANNELS, values) if bone is not None else ():
             setattr(bone, what, value)
+        if bone is not None and SWITCH in bone and values[len(CHANNELS) :] not in ([], [None]):
+            bone[SWITCH] = values[-1]
 
 
 def is_in_place(arm):

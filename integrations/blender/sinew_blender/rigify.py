@@ -46,8 +46,8 @@ def _depth(skeleton, name):
 
 
 def switches(arm):
-    """Bones with a switch from IK (0) to FK (1)."""
-    return [b.name for b in arm.pose.bones if "IK_FK" in b.keys()]
+    """Bones with a switch from IK to FK."""
+    return [b.name for b in arm.pose.bones if keys.SWITCH in b]
 
 
 def bake(context, arm):
@@ -76,8 +76,8 @@ def bake(context, arm):
     keys.remove_proxy(arm)
     actions.remove(action, arm, lambda path: f'constraints["{keys.CONSTRAINT}"]' in path)
     for name in switches(arm):
-        fcurve = actions.curve(action, arm, keys.bone_path(name, '["IK_FK"]'), 0, name)
-        value = float(arm.pose.bones[name]["IK_FK"])
+        fcurve = actions.curve(action, arm, keys.bone_path(name, f'["{keys.SWITCH}"]'), 0, name)
+        value = float(arm.pose.bones[name][keys.SWITCH])
         frames = [float(first - 1), float(first)] + ([float(back)] if back is not None else [])
         actions.write(fcurve, frames, [value, 1.0] + ([value] if back is not None else []), "CONSTANT")
     worst = _key(context, arm, action, levels, goals, first, last, back is not None)

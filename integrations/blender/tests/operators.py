@@ -453,6 +453,7 @@ def two_characters_meet():
 def fk_controls_of_rigify_take_the_fall():
     arm, names = fresh(rigs.rigify_human)
     settings(by="FRAME", handover=45, use_range=True, frame_start=1, frame_end=90)
+    user = posed(arm, names, 40, 50)
     check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
     own = posed(arm, names)
     check(bpy.ops.sinew.bake_fk() == {"FINISHED"}, "it is baked")
@@ -464,6 +465,9 @@ def fk_controls_of_rigify_take_the_fall():
     check(before < 1e-3, f"{1e3 * before} mm before")
     check(after < 0.05, f"{1e3 * after} mm after")
     print(f"  FK controls: limbs within {1e3 * after:.1f} mm")
+    check(bpy.ops.sinew.clear() == {"FINISHED"}, "it is cleared")
+    left = max(off(a, b, names) for a, b in zip(posed(arm, names, 40, 50), user))
+    check(left == 0.0, f"cleared, it is {left} m from the user's animation")
 
 
 @case
