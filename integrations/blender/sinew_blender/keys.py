@@ -21,6 +21,10 @@ def bone_path(name, what):
     return f'pose.bones["{bpy.utils.escape_identifier(name)}"].{what}'
 
 
+def bone_property(name, what):
+    return f'pose.bones["{bpy.utils.escape_identifier(name)}"]["{what}"]'
+
+
 def bone_values(arm, names, frames, worlds, carriers, stretches=None):
     """Location and rotation (quaternion) of each bone at each frame, as Blender's channels hold them. `frames` are in Sinew's axes;
     `stretches` say by bone how much longer than at rest it is at each frame."""

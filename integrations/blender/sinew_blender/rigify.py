@@ -75,11 +75,10 @@ def bake(context, arm):
     keys.keep_pose(arm, [c for c, _ in pairs] + switches(arm))
     keys.remove_proxy(arm)
     actions.remove(action, arm, lambda path: f'constraints["{keys.CONSTRAINT}"]' in path)
+    frames = [float(frame) for frame in goals]
     for name in switches(arm):
-        fcurve = actions.curve(action, arm, keys.bone_path(name, f'["{keys.SWITCH}"]'), 0, name)
-        value = float(arm.pose.bones[name][keys.SWITCH])
-        frames = [float(first - 1), float(first)] + ([float(back)] if back is not None else [])
-        actions.write(fcurve, frames, [value, 1.0] + ([value] if back is not None else []), "CONSTANT")
+        fcurve = actions.curve(action, arm, keys.bone_property(name, keys.SWITCH), 0, name)
+        actions.insert(fcurve, frames, [1.0] * len(frames), float(arm.pose.bones[name][keys.SWITCH]), back is not None)
     worst = _key(context, arm, action, levels, goals, first, last, back is not None)
     arm.sinew.made_action, arm.sinew.own_action, arm.sinew.keyed = made, own, "FK"
     context.scene.frame_set(at)
@@ -108,7 +107,10 @@ def _key(context, arm, action, levels, goals, first, last, returns):
         for _ in range(PASSES):
             for level in levels:
                 for control, deform in level:
-                    arm.pose.bones[control].matrix = sk.unscaled(inverse @ goals[frame][deform]) @ rest[control]
+                    bone = arm.pose.bones[control]
+                    bone.matrix = sk.unscaled(inverse @ goals[frame][deform]) @ rest[control]
+                    if all(bone.lock_location):
+                        bone.location = own[control]["location"]
                 context.view_layer.update()
         evaluated = arm.evaluated_get(context.evaluated_depsgraph_get())
         for deform, goal in goals[frame].items():

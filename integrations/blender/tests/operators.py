@@ -453,6 +453,9 @@ def two_characters_meet():
 def fk_controls_of_rigify_take_the_fall():
     arm, names = fresh(rigs.rigify_human)
     settings(by="FRAME", handover=45, use_range=True, frame_start=1, frame_end=90)
+    for frame, value in ((1, 1.0), (20, 0.0)):
+        arm.pose.bones["thigh_parent.L"]["IK_FK"] = value
+        arm.keyframe_insert('pose.bones["thigh_parent.L"]["IK_FK"]', frame=frame)
     user = posed(arm, names, 40, 50)
     check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
     own = posed(arm, names)
