@@ -8,11 +8,16 @@ from . import skeleton as sk
 from .skeleton import SinewError
 
 
+# Smallest change of a bone at rest that counts: of its axes, and of its place as a share of its length.
+MOVED = 1e-3
+
+
 def store(arm, ragdoll):
     """Stores a ragdoll on the armature and fills in the bones' panels."""
     arm.sinew.definition = ragdoll.to_json()
     arm.sinew.fitted = arm.sinew.definition
     arm.sinew.place = sk.text_of(sk.straight(arm.matrix_world))
+    arm.sinew.rest = json.dumps(_rest(arm, set(ragdoll.bones)))
     show(arm)
 
 
@@ -36,6 +41,33 @@ def show(arm):
             for key in ("swing_y", "swing_z", "twist"):
                 if key in limits:
                     setattr(settings, key, [math.radians(x) for x in limits[key]])
+
+
+def _rest(arm, names):
+    """Of each bone: its length, the next bone above it that is among these, and its matrix at rest."""
+    found = {}
+    for name in names:
+        bone = arm.data.bones[name]
+        above = next((up.name for up in bone.parent_recursive if up.name in names), "")
+        found[name] = [bone.length, above, [list(row) for row in bone.matrix_local]]
+    return found
+
+
+def changed(arm):
+    """A warning about bones that were moved or got another parent since the build."""
+    was = json.loads(arm.sinew.rest or "{}")
+    now = _rest(arm, set(was))
+    moved = [name for name in was if _differs(was[name], now[name])]
+    if not moved:
+        return []
+    more = f" and {len(moved) - 3} more" if len(moved) > 3 else ""
+    return [f"{arm.name} changed since its ragdoll was built ({', '.join(moved[:3])}{more}): build its ragdoll again"]
+
+
+def _differs(was, now):
+    (length, above, matrix), (_, above_now, matrix_now) = was, now
+    rows = [[abs(a - b) for a, b in zip(*both)] for both in zip(matrix[:3], matrix_now)]
+    return above != above_now or max(max(row[:3]) for row in rows) > MOVED or max(row[3] for row in rows) > MOVED * length
 
 
 def edits(arm):

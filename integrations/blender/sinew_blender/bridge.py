@@ -96,7 +96,8 @@ def load(arm, frames=None, fps=30.0, ignore=()):
         wanted["mass"] = settings.mass
     if settings.springs:
         wanted["settings"] = {"springs": "names"}
-    file = asked(
+    file = _asked_with_roles(
+        arm,
         engine().load_arrays,
         names,
         [-1 if parents[n] is None else index[parents[n]] for n in names],
@@ -108,6 +109,17 @@ def load(arm, frames=None, fps=30.0, ignore=()):
         **wanted,
     )
     return Loaded(file, skeleton, file.joints, parents, rest)
+
+
+def _asked_with_roles(arm, call, *arguments, **named):
+    """`asked`; an error about a role names the bone that has it."""
+    try:
+        return asked(call, *arguments, **named)
+    except SinewError as error:
+        for bone in arm.pose.bones:
+            if bone.sinew.role and f"role `{bone.sinew.role}`" in str(error):
+                raise SinewError(f"{bone.name}: {error}") from error
+        raise
 
 
 def _extent(arm, skeleton):
@@ -131,6 +143,14 @@ def ragdoll(arm):
     if not arm.sinew.definition:
         raise SinewError("Build the ragdoll first")
     return asked(engine().Ragdoll.from_json, arm.sinew.definition)
+
+
+def valid(arm):
+    """The ragdoll stored on the armature, if the armature still has its bones."""
+    for body in definition(arm)["bodies"]:
+        if body["bone"] not in arm.data.bones:
+            raise SinewError(f"{arm.name} has no bone {body['bone']} any more: build its ragdoll again")
+    return ragdoll(arm)
 
 
 def pose7(matrix):

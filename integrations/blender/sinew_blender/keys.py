@@ -11,12 +11,18 @@ CONSTRAINT = "Sinew"
 PROXY = "Sinew "
 CHANNELS = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
 TRACK = "Sinew"
+# Rigify's switch from IK (0) to FK (1).
+SWITCH = "IK_FK"
 # Largest distance from the rest pose for which a location gets no keys, in units of Blender, bone space.
 STILL = 1e-6
 
 
 def bone_path(name, what):
     return f'pose.bones["{bpy.utils.escape_identifier(name)}"].{what}'
+
+
+def bone_property(name, what):
+    return f'pose.bones["{bpy.utils.escape_identifier(name)}"]["{what}"]'
 
 
 def bone_values(arm, names, frames, worlds, carriers, stretches=None):
@@ -104,7 +110,7 @@ def keep_pose(arm, names):
     kept = {}
     for n in names:
         bone = arm.pose.bones[n]
-        kept[n] = [list(getattr(bone, what)) for what in CHANNELS]
+        kept[n] = [list(getattr(bone, what)) for what in CHANNELS] + [bone.get(SWITCH)]
     arm.sinew.own_pose = json.dumps(kept)
 
 
@@ -113,30 +119,44 @@ def restore_pose(arm):
         bone = arm.pose.bones.get(n)
         for what, value in zip(CHANNELS, values) if bone is not None else ():
             setattr(bone, what, value)
+        if bone is not None and SWITCH in bone and values[len(CHANNELS) :] not in ([], [None]):
+            bone[SWITCH] = values[-1]
+
+
+def is_in_place(arm):
+    """True if the Action of a simulation is the armature's, or was unlinked without another in its place."""
+    data, made = arm.animation_data, arm.sinew.made_action
+    if arm.sinew.keyed not in {"ACTION", "PROXY", "FK"}:
+        return False
+    if data is None or data.action == made:
+        return True
+    # A take that the user pushed down stays.
+    return data.action is None and all(strip.action != made for track in data.nla_tracks for strip in track.strips)
 
 
 def put_back(arm):
     """Restores the user's own Action, or none if there was none; channels without curves get their stored values."""
     restore_pose(arm)
     data = arm.animation_data
-    if arm.sinew.own_action is None:
+    if arm.sinew.own_action is None and data is not None:
         data.action = None
-    else:
+    elif arm.sinew.own_action is not None:
         actions.assign(arm, arm.sinew.own_action)
 
 
 def clear(arm):
     """Removes the keys of an earlier simulation and restores the user's animation."""
-    made, data = arm.sinew.made_action, arm.animation_data
+    made = arm.sinew.made_action
     remove_proxy(arm)
+    if is_in_place(arm):
+        put_back(arm)
+    data = arm.animation_data
     if data is not None:
         tracks = [t for t in data.nla_tracks if t.name == TRACK]
         for track in tracks:
             data.nla_tracks.remove(track)
         if tracks:
             restore_pose(arm)
-        if made is not None and data.action == made:
-            put_back(arm)
         take_from_track(arm, data)
     arm.sinew.own_action = arm.sinew.made_action = None
     arm.sinew.own_pose = arm.sinew.own_track = ""

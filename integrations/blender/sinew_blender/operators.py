@@ -82,7 +82,7 @@ class SINEW_OT_forget(Sinew, bpy.types.Operator):
         for arm in selected_armatures(context):
             keys.clear(arm)
             preview.clear(arm)
-            for name in ("definition", "fitted", "place", "report"):
+            for name in ("definition", "fitted", "place", "rest", "report"):
                 setattr(arm.sinew, name, "")
             arm.sinew.findings.clear()
             bodies.show(arm)
@@ -124,7 +124,9 @@ class SINEW_OT_doctor(Sinew, bpy.types.Operator):
 
     def act(self, context):
         arm = active_armature(context)
-        count = examine(arm, bridge.ragdoll(arm))
+        count = examine(arm, bridge.valid(arm))
+        for note in bodies.changed(arm):
+            self.report({"WARNING"}, note)
         self.report({"INFO"}, counted(count, "finding", "findings"))
 
 
@@ -162,7 +164,7 @@ class SINEW_OT_cure(Sinew, bpy.types.Operator):
 
     def act(self, context):
         arm = active_armature(context)
-        cured, report = bridge.asked(bridge.ragdoll(arm).cured)
+        cured, report = bridge.asked(bridge.valid(arm).cured)
         arm.sinew.definition = cured.to_json()
         bodies.show(arm)
         left = examine(arm, cured)
@@ -249,7 +251,7 @@ class Simulates(Sinew):
         for arm, ragdoll in job.built:
             bodies.store(arm, ragdoll)
             examine(arm, ragdoll)
-        job.notes += simulation.overlaps(job) + simulation.stretched(job)
+        job.notes += simulation.overlaps(job) + simulation.stretched(job) + simulation.falls_on(job) + simulation.blown(job)
         self.done(context, job)
         for note in job.notes:
             self.report({"WARNING"}, note)
@@ -268,7 +270,7 @@ class SINEW_OT_simulate(Simulates, bpy.types.Operator):
         context.scene.frame_set(at)
         for arm in job.arms:
             preview.clear(arm)
-        verdicts = ", ".join(f"{arm.name} {baked.verdict}" for arm, baked in zip(job.arms, job.baked))
+        verdicts = ", ".join(f"{arm.name} {simulation.judged(baked)[0]}" for arm, baked in zip(job.arms, job.baked))
         self.report({"INFO"}, f"Simulated {job.last - job.first + 1} frames, keyed as {', '.join(sorted(set(ways))).lower()}: {verdicts}")
 
 
@@ -355,8 +357,9 @@ class SINEW_OT_bake_fk(Sinew, bpy.types.Operator):
     def act(self, context):
         from . import rigify
 
-        worst = rigify.bake(context, active_armature(context))
-        self.report({"INFO"}, f"Deform bones are within {1e3 * worst * sk.unit_of_scene():.1f} mm of the simulation")
+        worst = rigify.bake(context, active_armature(context)) * sk.unit_of_scene()
+        level = {"INFO"} if worst < rigify.CLOSE else {"WARNING"}
+        self.report(level, f"Deform bones are within {1e3 * worst:.1f} mm of the simulation")
 
 
 class SINEW_OT_export(Sinew, bpy.types.Operator):
@@ -382,11 +385,7 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
 
     def act(self, context):
         arm = active_armature(context)
-        path = bpy.path.abspath(self.filepath)
-        if not os.path.basename(path):
-            raise SinewError("Give the file a name: filepath has none")
-        is_text = self.format == "USD" and path.endswith(".usda")
-        path = path if is_text or path.endswith(self.ENDS[self.format]) else path + self.ENDS[self.format]
+        path = self.path()
         try:
             if self.format == "USD":
                 self.write_usd(context, arm, path)
@@ -397,14 +396,25 @@ class SINEW_OT_export(Sinew, bpy.types.Operator):
                 fps = context.scene.render.fps / context.scene.render.fps_base
                 data = bridge.asked(bridge.load(arm, take.frames, fps).file.glb)
             elif self.format == "MJCF":
-                data = bridge.asked(bridge.ragdoll(arm).to_mjcf, arm.name)[0].encode()
+                data = bridge.asked(bridge.valid(arm).to_mjcf, arm.name)[0].encode()
             else:
-                data = bridge.ragdoll(arm).to_json().encode()
+                data = bridge.valid(arm).to_json().encode()
             with open(path, "wb") as file:
                 file.write(data)
         except OSError as error:
             raise SinewError(f"{path}: {error.strerror or error}") from error
         self.report({"INFO"}, f"Wrote {path}")
+
+    def path(self):
+        """The path to write, with the ending of the format."""
+        if self.filepath.startswith("//") and not bpy.data.filepath:
+            raise SinewError("Save the .blend file first, or give a full path: // is the folder of the .blend file")
+        path, end = bpy.path.abspath(self.filepath), self.ENDS[self.format]
+        if not os.path.basename(path):
+            raise SinewError("Give the file a name: filepath has none")
+        if path.endswith(end) or self.format == "USD" and path.endswith(".usda"):
+            return path
+        return (path.removesuffix(".json") if self.format == "SINEW" else path) + end
 
     def write_usd(self, context, arm, path):
         from sinew import usd

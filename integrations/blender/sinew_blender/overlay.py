@@ -12,6 +12,9 @@ BODY = (0.25, 0.75, 1.0, 0.9)
 CHOSEN = (1.0, 0.65, 0.15, 1.0)
 LIMIT = (1.0, 0.35, 0.3, 0.9)
 TWIST = (0.45, 0.9, 0.4, 0.9)
+HIT = (1.0, 0.1, 0.5, 1.0)
+# Width of a hit's arrow in pixels; length and radius of its head as shares of its length.
+HIT_WIDTH, HEAD_LENGTH, HEAD_RADIUS = 4.0, 0.25, 0.08
 # Number of corners of a circle.
 STEPS = 24
 # Length of a limit's cone as a share of its bone.
@@ -129,7 +132,9 @@ def lines_of(arm, chosen):
     """Colours and line segments in the world, for the current pose of the armature."""
     settings, out = arm.sinew, {BODY: [], CHOSEN: [], LIMIT: [], TWIST: []}
     for name, (body, carrier, swing, twist, _, _) in pieces(arm).items():
-        bone = arm.pose.bones[name]
+        bone = arm.pose.bones.get(name)
+        if bone is None or carrier not in {None, *arm.pose.bones.keys()}:
+            continue
         if settings.show_bodies:
             at = arm.matrix_world @ bone.matrix
             out[CHOSEN if name in chosen else BODY].extend(at @ p for p in body)
@@ -140,6 +145,34 @@ def lines_of(arm, chosen):
             out[LIMIT].extend((at @ p) + shift for p in swing)
             out[TWIST].extend((at @ p) + shift for p in twist)
     return out
+
+
+def hit_lines(ob):
+    """Line segments of a hit's arrow in the world."""
+    if not ob.sinew_hit.enabled:
+        return []
+    size = ob.empty_display_size
+    tip = Vector((0, 0, size))
+    lines = [Vector(), tip]
+    for side in (X, -X, Y, -Y):
+        lines += [tip, size * ((1.0 - HEAD_LENGTH) * Z + HEAD_RADIUS * side)]
+    return [ob.matrix_world @ p for p in lines]
+
+
+def _draw_hits(context):
+    import gpu
+    from gpu_extras.batch import batch_for_shader
+
+    shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR" if bpy.app.version >= (4, 0) else "3D_POLYLINE_UNIFORM_COLOR")
+    for ob in context.visible_objects:
+        points = hit_lines(ob) if ob.type == "EMPTY" else []
+        if points:
+            batch = batch_for_shader(shader, "LINES", {"pos": [tuple(p) for p in points]})
+            shader.bind()
+            shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+            shader.uniform_float("lineWidth", HIT_WIDTH)
+            shader.uniform_float("color", HIT)
+            batch.draw(shader)
 
 
 def _shown(context):
@@ -170,6 +203,7 @@ def draw_lines():
                 shader.bind()
                 shader.uniform_float("color", color)
                 batch.draw(shader)
+    _draw_hits(context)
     gpu.state.line_width_set(1.0)
     gpu.state.blend_set("NONE")
 
@@ -185,8 +219,9 @@ def draw_masses():
         if not arm.sinew.show_masses:
             continue
         for name, (_, _, _, _, center, mass) in pieces(arm).items():
-            at = arm.matrix_world @ arm.pose.bones[name].matrix @ center
-            where = location_3d_to_region_2d(context.region, context.region_data, at)
+            bone = arm.pose.bones.get(name)
+            at = arm.matrix_world @ bone.matrix @ center if bone is not None else None
+            where = location_3d_to_region_2d(context.region, context.region_data, at) if at is not None else None
             if where is not None:
                 blf.position(0, where.x, where.y, 0)
                 blf.color(0, 1, 1, 1, 1)

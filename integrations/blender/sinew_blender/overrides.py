@@ -5,7 +5,7 @@ import bpy
 
 from . import bodies
 
-KEPT = ("definition", "fitted", "place", "report", "keyed", "own_pose", "own_action", "own_track", "made_action")
+KEPT = ("definition", "fitted", "place", "rest", "report", "keyed", "own_pose", "own_action", "own_track", "made_action")
 
 
 def armatures():

@@ -38,6 +38,12 @@ class SINEW_PT_ragdoll(Side, bpy.types.Panel):
             layout.operator("sinew.forget", icon="X")
 
 
+def findings_of(context):
+    """The number of findings of the active armature, or nothing."""
+    count = len(active_armature(context).sinew.findings)
+    return str(count) if count else ""
+
+
 class SINEW_PT_doctor(Side, bpy.types.Panel):
     bl_idname, bl_label, bl_parent_id, bl_options = "SINEW_PT_doctor", "Doctor", "SINEW_PT_ragdoll", {"DEFAULT_CLOSED"}
 
@@ -45,6 +51,9 @@ class SINEW_PT_doctor(Side, bpy.types.Panel):
     def poll(cls, context):
         arm = active_armature(context)
         return arm is not None and bool(arm.sinew.definition)
+
+    def draw_header_preset(self, context):
+        self.layout.label(text=findings_of(context))
 
     def draw(self, context):
         layout, settings = self.layout, active_armature(context).sinew

@@ -68,6 +68,8 @@ class Ragdoll:
     fitted: StringProperty()
     # World matrix of the armature at the time of the build: 16 numbers.
     place: StringProperty()
+    # The bones with bodies at the time of the build, see `bodies`.
+    rest: StringProperty()
     report: StringProperty()
     keyed: StringProperty()
     # Values of the bones' channels before they were keyed.
@@ -79,7 +81,7 @@ class Ragdoll:
 
 
 class ArmatureSettings(Ragdoll, bpy.types.PropertyGroup):
-    height: FloatProperty(name="Height", description="Height of the character in metres; 0: read from the armature", min=0, soft_max=4)
+    height: FloatProperty(name="Height", description="Height of the character in metres; 0: read from the armature", min=0, soft_max=4, max=1000)
     mass: FloatProperty(name="Mass", description="Mass of the character in kg; 0: by its height and volume", min=0, soft_max=300)
     springs: BoolProperty(name="Springs", description="What is called hair, ear, tail, skirt or ribbon swings")
     show_bodies: BoolProperty(name="Bodies", default=True, description="Draw the bodies")

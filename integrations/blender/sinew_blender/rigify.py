@@ -4,20 +4,22 @@ import re
 
 import bpy
 
-from . import actions, keys
+from . import actions, bridge, keys
 from . import skeleton as sk
 from .skeleton import SinewError
 
 # Passes over all controls at a frame; each uses the current pose of its parents.
 PASSES = 2
+# Largest distance from the proxy that is no reason for a warning, metres.
+CLOSE = 0.05
+# Roles of bodies whose control is called like the role, whatever the deform bone's name is.
+NAMED = {"neck", "head"}
 
 
-def control_of(arm, deform):
+def control_of(arm, deform, role):
     """The FK control that moves a deform bone as a whole, or None."""
-    name = sk.plain(deform)
-    stem, side = re.fullmatch(r"(.+?)(\.[LR])?", name).groups()
-    side = side or ""
-    for candidate in (f"{stem}_fk{side}", f"{stem}{side}"):
+    stem, number, side = re.fullmatch(r"(.+?)(\.\d+)?(\.[LR])?", sk.plain(deform)).groups(default="")
+    for candidate in (f"{stem}_fk{number}{side}", f"{stem}{number}{side}", role if role in NAMED else ""):
         bone = arm.data.bones.get(candidate)
         if bone is not None and not bone.use_deform:
             return candidate
@@ -25,20 +27,27 @@ def control_of(arm, deform):
 
 
 def controls(arm, skeleton):
-    """Pairs of a control and the deform bone that it moves, from the root down."""
-    found, root = [], skeleton.names[0]
-    if arm.data.bones.get("torso") is not None:
-        found.append(("torso", root))
+    """Pairs of a control and the deform bone that it moves, by levels from the root down. Bones without bodies have none, except those of
+    FK chains: face and fingers follow the bodies with the user's animation."""
+    roles = {body["bone"]: body["role"] for body in bridge.definition(arm)["bodies"]}
+    levels, used = {}, {None}
     for deform in skeleton.names:
-        control = control_of(arm, deform)
-        if control is not None and all(c != control for c, _ in found):
-            found.append((control, deform))
-    return found
+        control = control_of(arm, deform, roles.get(deform))
+        if control in used or deform not in roles and "_fk" not in control:
+            continue
+        used.add(control)
+        levels.setdefault(_depth(skeleton, deform), []).append((control, deform))
+    torso = [[("torso", skeleton.names[0])]] if arm.data.bones.get("torso") is not None else []
+    return torso + [levels[depth] for depth in sorted(levels)]
+
+
+def _depth(skeleton, name):
+    return 0 if name is None else 1 + _depth(skeleton, skeleton.parent[name])
 
 
 def switches(arm):
-    """Bones with a switch from IK (0) to FK (1)."""
-    return [b.name for b in arm.pose.bones if "IK_FK" in b.keys()]
+    """Bones with a switch from IK to FK."""
+    return [b.name for b in arm.pose.bones if keys.SWITCH in b]
 
 
 def bake(context, arm):
@@ -47,7 +56,8 @@ def bake(context, arm):
     if proxy is None or arm.sinew.keyed != "PROXY":
         raise SinewError("Simulate with a proxy first")
     skeleton = sk.skeleton_of(arm)
-    pairs = controls(arm, skeleton)
+    levels = controls(arm, skeleton)
+    pairs = [pair for level in levels for pair in level]
     if len(pairs) < 3 or not switches(arm):
         raise SinewError(f"{arm.name} has no FK controls of Rigify")
     first, last = (int(x) for x in proxy.animation_data.action.frame_range)
@@ -65,12 +75,11 @@ def bake(context, arm):
     keys.keep_pose(arm, [c for c, _ in pairs] + switches(arm))
     keys.remove_proxy(arm)
     actions.remove(action, arm, lambda path: f'constraints["{keys.CONSTRAINT}"]' in path)
+    frames = [float(frame) for frame in goals]
     for name in switches(arm):
-        fcurve = actions.curve(action, arm, keys.bone_path(name, '["IK_FK"]'), 0, name)
-        value = float(arm.pose.bones[name]["IK_FK"])
-        frames = [float(first - 1), float(first)] + ([float(back)] if back is not None else [])
-        actions.write(fcurve, frames, [value, 1.0] + ([value] if back is not None else []), "CONSTANT")
-    worst = _key(context, arm, action, pairs, goals, first, last, back is not None)
+        fcurve = actions.curve(action, arm, keys.bone_property(name, keys.SWITCH), 0, name)
+        actions.insert(fcurve, frames, [1.0] * len(frames), float(arm.pose.bones[name][keys.SWITCH]), back is not None)
+    worst = _key(context, arm, action, levels, goals, first, last, back is not None)
     arm.sinew.made_action, arm.sinew.own_action, arm.sinew.keyed = made, own, "FK"
     context.scene.frame_set(at)
     return worst
@@ -86,7 +95,8 @@ def _back(arm, name):
     return None
 
 
-def _key(context, arm, action, pairs, goals, first, last, returns):
+def _key(context, arm, action, levels, goals, first, last, returns):
+    pairs = [pair for level in levels for pair in level]
     rest = {c: arm.data.bones[d].matrix_local.inverted() @ arm.data.bones[c].matrix_local for c, d in pairs}
     rows = {c: [] for c, _ in pairs}
     own = {c: {what: tuple(getattr(arm.pose.bones[c], what)) for what in keys.CHANNELS} for c, _ in pairs}
@@ -95,14 +105,18 @@ def _key(context, arm, action, pairs, goals, first, last, returns):
         context.scene.frame_set(frame)
         inverse = arm.matrix_world.inverted()
         for _ in range(PASSES):
-            for control, deform in pairs:
-                bone = arm.pose.bones[control]
-                bone.matrix = sk.unscaled(inverse @ goals[frame][deform]) @ rest[control]
+            for level in levels:
+                for control, deform in level:
+                    bone = arm.pose.bones[control]
+                    bone.matrix = sk.unscaled(inverse @ goals[frame][deform]) @ rest[control]
+                    if all(bone.lock_location):
+                        bone.location = own[control]["location"]
                 context.view_layer.update()
         evaluated = arm.evaluated_get(context.evaluated_depsgraph_get())
-        for control, deform in pairs:
+        for deform, goal in goals[frame].items():
             now = (evaluated.matrix_world @ evaluated.pose.bones[deform].matrix).translation
-            worst = max(worst, (now - goals[frame][deform].translation).length)
+            worst = max(worst, (now - goal.translation).length)
+        for control, _ in pairs:
             bone = arm.pose.bones[control]
             rows[control].append((tuple(bone.location), bone.matrix_basis.to_quaternion()))
     numbers = [float(f) for f in range(first, last + 1)]

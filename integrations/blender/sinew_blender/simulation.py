@@ -1,17 +1,21 @@
 """Samples the user's animation, simulates, and writes keys."""
 
 import json
+import math
 import threading
 from dataclasses import dataclass, field
 
 import bpy
+from mathutils import Vector
 
-from . import actions, bridge, keys, overlap, stage
+from . import actions, bodies, bridge, keys, overlap, stage
 from . import skeleton as sk
 from .skeleton import SinewError
 
 # States in which the user's animation alone sets the pose.
 OWN = {"animated"}
+# Begin of the reason for a fall whose energy grows.
+ENERGY = "energy gain"
 # Distance of a joint from its place in the rest pose at the hand-over that is worth a warning, metres.
 MOST_STRETCH = 0.03
 
@@ -90,13 +94,15 @@ def preparing(context, arms):
         raise SinewError(f"The hand-over, frame {at}, is outside of the range {first} to {last}")
     if settings.use_return and not max(at, first) < settings.return_frame <= last:
         raise SinewError(f"The return, frame {settings.return_frame}, is not between hand-over and end")
+    check_pose(scene, arms)
     loaded, takes, actors, units, built, notes = [], [], [], [], [], []
     for arm in arms:
         with own_animation(arm):
             take = yield from sk.sampling(arm, sk.skeleton_of(arm), first, last)
         one = bridge.load(arm, take.frames, fps)
         if arm.sinew.definition:
-            ragdoll = bridge.ragdoll(arm)
+            ragdoll = bridge.valid(arm)
+            notes += bodies.changed(arm)
         else:
             ragdoll = bridge.build(arm)
             built.append((arm, ragdoll))
@@ -135,6 +141,17 @@ def preparing(context, arms):
     return Job(arms, loaded, takes, actors, world, first, last, fps, built, notes)
 
 
+def check_pose(scene, arms):
+    """Refuses what keeps an animation, or its keys, from their frames."""
+    if scene.render.frame_map_old != scene.render.frame_map_new:
+        raise SinewError("Time Stretching is on: set Old and New to 100 (Output properties, Frame Range)")
+    for arm in arms:
+        if arm.data.pose_position == "REST":
+            raise SinewError(f"{arm.name} is in Rest Position: choose Pose Position (armature properties, Pose)")
+        if arm.sinew.definition:
+            bridge.valid(arm)
+
+
 def check_return(settings, first, fps, given):
     """Refuses a blend that begins before the character falls: it would move the hand-over to its begin."""
     starts = [given["limp_at"]] if "limp_at" in given else []
@@ -160,20 +177,21 @@ class own_animation:
     """Temporarily restores the user's animation without the results of an earlier simulation, for sampling."""
 
     def __init__(self, arm):
-        self.arm, self.muted, self.tracks, self.action = arm, [], [], None
+        self.arm, self.muted, self.tracks, self.is_swapped, self.action = arm, [], [], keys.is_in_place(arm), None
 
     def __enter__(self):
-        arm, data = self.arm, self.arm.animation_data
+        arm = self.arm
         for bone in arm.pose.bones:
             for c in bone.constraints:
                 if c.name == keys.CONSTRAINT and not c.mute:
                     c.mute = True
                     self.muted.append((bone.name, c.name))
+        if self.is_swapped:
+            self.action = arm.animation_data.action if arm.animation_data is not None else None
+            keys.put_back(arm)
+        data = arm.animation_data
         if data is None:
             return self
-        if data.action is not None and data.action == arm.sinew.made_action:
-            self.action = data.action
-            keys.put_back(arm)
         for track in data.nla_tracks:
             if track.name == keys.TRACK and not track.mute:
                 track.mute = True
@@ -187,7 +205,7 @@ class own_animation:
             self.arm.pose.bones[bone].constraints[name].mute = False
         for track in self.tracks:
             track.mute = False
-        if self.action is not None:
+        if self.is_swapped:
             actions.assign(self.arm, self.action)
 
 
@@ -274,11 +292,43 @@ def stretched(job):
                 off[n] = way.length * loaded.unit
         far = [n for n in off if off[n] > MOST_STRETCH]
         if far:
+            cause = f"{loaded.parents[far[0]]} or a bone above is scaled or moved. Apply the pose as rest pose, or remove the scale"
+            scale = arm.matrix_world.to_scale()
+            if max(scale) > (1.0 + bridge.SAME_SCALE) * min(scale):
+                cause = "its object's scale differs by axes. Apply it (Ctrl+A), and build again"
             found.append(
-                f"{arm.name} is stretched by up to {100 * max(off.values()):.0f} cm when it falls, and jumps into the lengths of its rest pose:"
-                f" {loaded.parents[far[0]]} or a bone above is scaled or moved. Apply the pose as rest pose, or remove the scale"
+                f"{arm.name} is stretched by up to {100 * max(off.values()):.0f} cm when it falls, and changes to the lengths of its rest pose: {cause}"
             )
     return found
+
+
+def falls_on(job):
+    """Warnings about characters that at the end, or before the return, are faster than after a fall by their own height."""
+    settings, found = bpy.context.scene.sinew, []
+    last = max(settings.return_frame - settings.return_blend, job.first + 1) if settings.use_return else job.last
+    for arm, baked in zip(job.arms, job.baked):
+        height = json.loads(arm.sinew.definition)["height"]
+        before, end = baked.positions[last - job.first - 1 : last - job.first + 1, 0, 1]
+        if (before - end) * job.fps > math.sqrt(2.0 * Vector(job.stage["gravity"]).length * height) > 0.0:
+            found.append(
+                f"{arm.name} still falls at frame {last}: enable Ground, or collide with what is below it."
+                " Faces collide on the side of their normals"
+            )
+    return found
+
+
+def judged(baked):
+    """Verdict and reasons of a fall. Wind adds energy: it is no reason there."""
+    if bpy.context.scene.sinew.wind.length == 0 or baked.verdict != "usable":
+        return baked.verdict, list(baked.reasons)
+    left = [reason for reason in baked.reasons if not reason.startswith(ENERGY)]
+    return ("usable" if left else "good"), left
+
+
+def blown(job):
+    """Notes about energy that the verdict leaves out."""
+    scored = [(arm, baked) for arm, baked in zip(job.arms, job.baked) if len(judged(baked)[1]) < len(baked.reasons)]
+    return [f"{arm.name}: wind adds energy to the fall, which the verdict leaves out" for arm, _ in scored]
 
 
 def write(job, how):
@@ -312,13 +362,14 @@ def report(arm, loaded, take, baked, fall, way):
     for i in range(fall.first - take.first):
         for n in loaded.skeleton.names:
             off = max(off, (frames[i][n].translation - take.frames[i][n].translation).length * unit)
+    verdict, reasons = judged(baked)
     return {
         "keyed": way,
         "frames": len(fall.frames),
         "handover": fall.first,
         "before_handover_mm": round(off, 4),
-        "verdict": baked.verdict,
-        "reasons": list(baked.reasons),
+        "verdict": verdict,
+        "reasons": reasons,
         "joint_gap_mm": 1e3 * baked.quality["joint_gap_max_m"],
         "events": [[round(t, 3), e] for t, e in baked.events],
         "hash": f"{baked.hash:016x}",

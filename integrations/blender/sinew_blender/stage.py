@@ -116,14 +116,16 @@ def hits(scene, arm, definition, first, fps, notes):
         if ob.type != "EMPTY" or not hit.enabled or hit.armature not in {arm, None}:
             continue
         if not hit.bone:
-            raise SinewError(f"Hit {ob.name} has no bone: choose one in its Sinew panel")
+            raise SinewError(f"{ob.name} has no bone: choose one in its Sinew panel")
         if hit.bone not in arm.data.bones:
             if hit.armature is None:
                 continue
-            raise SinewError(f"Hit {ob.name}: {arm.name} has no bone {hit.bone}")
+            raise SinewError(f"{ob.name}: {arm.name} has no bone {hit.bone}")
         way = (TO_Y @ ob.matrix_world).to_3x3().col[2].normalized()
         if way.length == 0:
-            raise SinewError(f"Hit {ob.name} has no direction: it is scaled to 0")
+            raise SinewError(f"{ob.name} has no direction: it is scaled to 0")
+        if hit.impulse == 0:
+            raise SinewError(f"{ob.name} has an impulse of 0 N·s: set Impulse, or disable the hit")
         most = hardest(arm, definition, hit.bone)
         if hit.impulse > most:
             notes.append(f"{ob.name}: {hit.impulse:,.0f} N·s is more than {hit.bone} takes, and was limited to {most:,.0f} N·s")

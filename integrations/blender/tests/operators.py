@@ -8,7 +8,7 @@ import tempfile
 
 import bpy
 import numpy as np
-from mathutils import Matrix
+from mathutils import Matrix, Vector
 
 import installed
 import rigs
@@ -132,6 +132,14 @@ def a_scaled_bone_is_told():
     check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
     notes = report(arm)["notes"]
     check(len(notes) == 1 and "stretched by up to 7 cm" in notes[0], f"{notes}")
+    rigs.empty_scene()
+    arm = rigs.cesium_man()
+    arm.scale = (1.0, 1.3, 0.8)
+    bpy.context.view_layer.update()
+    settings(by="FRAME", handover=45, use_return=False)
+    check(bpy.ops.sinew.build() == {"FINISHED"} and bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    notes = report(arm)["notes"]
+    check(len(notes) == 1 and "object's scale differs by axes" in notes[0], f"{notes}")
 
 
 @case
@@ -445,6 +453,10 @@ def two_characters_meet():
 def fk_controls_of_rigify_take_the_fall():
     arm, names = fresh(rigs.rigify_human)
     settings(by="FRAME", handover=45, use_range=True, frame_start=1, frame_end=90)
+    for frame, value in ((1, 1.0), (20, 0.0)):
+        arm.pose.bones["thigh_parent.L"]["IK_FK"] = value
+        arm.keyframe_insert('pose.bones["thigh_parent.L"]["IK_FK"]', frame=frame)
+    user = posed(arm, names, 40, 50)
     check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
     own = posed(arm, names)
     check(bpy.ops.sinew.bake_fk() == {"FINISHED"}, "it is baked")
@@ -456,6 +468,43 @@ def fk_controls_of_rigify_take_the_fall():
     check(before < 1e-3, f"{1e3 * before} mm before")
     check(after < 0.05, f"{1e3 * after} mm after")
     print(f"  FK controls: limbs within {1e3 * after:.1f} mm")
+    check(bpy.ops.sinew.clear() == {"FINISHED"}, "it is cleared")
+    left = max(off(a, b, names) for a, b in zip(posed(arm, names, 40, 50), user))
+    check(left == 0.0, f"cleared, it is {left} m from the user's animation")
+
+
+@case
+def fk_controls_of_a_rig_with_a_face_take_the_fall():
+    arm, names = fresh(rigs.rigify_face)
+    first, last, back = 25, 56, 50
+    settings(by="FRAME", handover=30, use_return=True, return_frame=back, return_blend=8, use_range=True, frame_start=first, frame_end=last)
+    own = posed(arm, names, first, last)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    proxy = posed(arm, names, first, last)
+    words = said(bpy.ops.sinew.bake_fk)
+    keyed = posed(arm, names, first, last)
+    error = max(off(a, b, names) for a, b in zip(keyed, proxy))
+    check(error < 0.05, f"a bone is {error} m from the proxy")
+    sizes = [abs(length - 1.0) for frame in keyed for n in names for length in frame[n].to_scale()]
+    check(max(sizes) < 0.5, f"a bone is scaled by {max(sizes)}")
+    after = max(off(keyed[f - first], own[f - first], names) for f in range(back, last + 1))
+    check(after < 1e-4, f"after the return it is {after} m from its animation")
+    check("Info: Deform bones are within" in words, words)
+    print(f"  FK controls with a face: within {1e3 * error:.1f} mm")
+
+
+@case
+def a_bake_that_is_far_off_is_a_warning():
+    arm, names = fresh(rigs.rigify_human)
+    settings(by="FRAME", handover=10, use_return=False, use_range=True, frame_start=5, frame_end=14)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    # A control that a constraint holds cannot follow.
+    held = arm.pose.bones["upper_arm_fk.L"].constraints.new("LIMIT_LOCATION")
+    held.use_min_x = held.use_max_x = True
+    held.min_x = held.max_x = 0.5
+    held.owner_space = "LOCAL"
+    words = said(bpy.ops.sinew.bake_fk)
+    check("Warning: Deform bones are within" in words, words)
 
 
 @case
@@ -568,6 +617,172 @@ def bones_without_keys_return():
     back = posed(arm, names)
     error = max(off(back[f], own[f], names) for f in range(80 - FIRST, len(own)))
     check(error < 1e-4, f"after the return it is {error} m from its animation")
+
+
+def in_edit_mode(arm, change):
+    bpy.ops.object.mode_set(mode="EDIT")
+    change(arm.data.edit_bones)
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+@case
+def a_scale_by_axes_returns():
+    rigs.empty_scene()
+    arm = rigs.cesium_man()
+    arm.animation_data_clear()
+    arm.scale = (1.0, 1.3, 0.8)
+    bpy.context.view_layer.update()
+    check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built")
+    names = addon().skeleton.skeleton_of(arm).names
+    own = posed(arm, names)
+    settings(by="FRAME", handover=30, use_return=True, return_frame=80, return_blend=15, keys="ACTION")
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it falls and returns")
+    back = posed(arm, names)
+    error = max(off(back[f], own[f], names) for f in range(80 - FIRST, len(own)))
+    check(error < 1e-4, f"after the return it is {error} m from its animation")
+
+
+@case
+def a_clear_restores_an_unlinked_action():
+    arm, names = fresh()
+    own, action = posed(arm, names), arm.animation_data.action
+    settings(by="FRAME", handover=45, use_return=False, keys="ACTION")
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    arm.animation_data.action = None
+    check(bpy.ops.sinew.clear() == {"FINISHED"}, "it is cleared")
+    check(arm.animation_data.action == action, f"the Action is {arm.animation_data.action}")
+    check(max(off(a, b, names) for a, b in zip(posed(arm, names), own)) == 0.0, "it moves as before")
+    bpy.ops.sinew.simulate()
+    keyed = posed(arm, names)
+    arm.animation_data.action = None
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated from its own Action")
+    check(max(off(a, b, names) for a, b in zip(posed(arm, names), keyed)) == 0.0, "and falls as before")
+    other = bpy.data.actions.new("Other")
+    arm.animation_data.action = other
+    check(bpy.ops.sinew.clear() == {"FINISHED"} and arm.animation_data.action == other, "another Action stays")
+
+
+@case
+def a_bone_that_is_gone_asks_for_a_build():
+    for change in (lambda bones: bones.remove(bones["leg_joint_L_3"]), lambda bones: setattr(bones["leg_joint_L_3"], "name", "shin")):
+        arm, _ = fresh()
+        settings(by="FRAME", handover=45, use_return=False)
+        addon().overlay.lines_of(arm, set())
+        in_edit_mode(arm, change)
+        check(addon().overlay.lines_of(arm, {"torso_joint_3"}), "the other bodies are drawn")
+        for run in (bpy.ops.sinew.simulate, bpy.ops.sinew.doctor, bpy.ops.sinew.cure):
+            refused(run, "no bone leg_joint_L_3 any more: build its ragdoll again")
+        with tempfile.TemporaryDirectory() as folder:
+            refused(bpy.ops.sinew.export, "build its ragdoll again", filepath=os.path.join(folder, "it"), format="SINEW")
+        arm.pose.bones["torso_joint_3"].sinew.mass = 9.0
+        check(bpy.ops.sinew.build() == {"FINISHED"} and bpy.ops.sinew.simulate() == {"FINISHED"}, "built again, it falls")
+
+
+@case
+def bones_that_moved_ask_for_a_build():
+    def move(bones):
+        bones["Skeleton_arm_joint_L__2_"].head.x += 0.1
+
+    def reparent(bones):
+        bones["leg_joint_L_3"].parent = bones["leg_joint_L_1"]
+
+    for change, bone in ((move, "Skeleton_arm_joint_L__2_"), (reparent, "leg_joint_L_3")):
+        arm, _ = fresh()
+        settings(by="FRAME", handover=45, use_return=False)
+        check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["notes"] == [], f"{report(arm)['notes']}")
+        in_edit_mode(arm, change)
+        check("build its ragdoll again" in said(bpy.ops.sinew.doctor), "the doctor tells")
+        check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+        notes = report(arm)["notes"]
+        check(any(bone in note and "build its ragdoll again" in note for note in notes), f"{notes}")
+        bpy.ops.sinew.clear()
+        bpy.ops.sinew.build()
+        check(bpy.ops.sinew.simulate() == {"FINISHED"} and not any("build its" in note for note in report(arm)["notes"]), "built again")
+
+
+@case
+def mistakes_in_settings_are_named():
+    arm, _ = fresh()
+    settings(by="FRAME", handover=45, use_return=False)
+    arm.data.pose_position = "REST"
+    refused(bpy.ops.sinew.simulate, "is in Rest Position")
+    arm.data.pose_position = "POSE"
+    bpy.context.scene.render.frame_map_new = 200
+    refused(bpy.ops.sinew.simulate, "Time Stretching")
+    bpy.context.scene.render.frame_map_new = 100
+    arm.data.bones.active = arm.data.bones["torso_joint_3"]
+    bpy.ops.sinew.add_hit(impulse=0)
+    refused(bpy.ops.sinew.simulate, "Error: Hit torso_joint_3 has an impulse of 0")
+    hit = bpy.data.objects["Hit torso_joint_3"]
+    hit.sinew_hit.bone = ""
+    refused(bpy.ops.sinew.simulate, "Error: Hit torso_joint_3 has no bone")
+    bpy.data.objects.remove(hit)
+    arm.pose.bones["leg_joint_L_1"].sinew.role = "nonsense"
+    refused(bpy.ops.sinew.build, "leg_joint_L_1: no role `nonsense`")
+    arm.pose.bones["leg_joint_L_1"].sinew.role = ""
+    arm.sinew.height = 1e9
+    check(arm.sinew.height == 1000, f"the height is {arm.sinew.height}")
+    check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built at that height")
+
+
+@case
+def files_have_the_names_that_were_given():
+    arm, _ = fresh()
+    refused(bpy.ops.sinew.export, "Save the .blend file first", filepath="//it.xml", format="MJCF")
+    with tempfile.TemporaryDirectory() as folder:
+        check(bpy.ops.sinew.export(filepath=os.path.join(folder, "x.json"), format="SINEW") == {"FINISHED"}, "it is written")
+        check(os.listdir(folder) == ["x.sinew.json"], f"{os.listdir(folder)}")
+
+
+@case
+def wind_is_no_reason_for_a_worse_verdict():
+    arm, _ = fresh()
+    settings(by="FRAME", handover=45, use_return=False, wind=(0, 30, 0))
+    words = said(bpy.ops.sinew.simulate)
+    told = report(arm)
+    check(told["verdict"] == "good" and told["reasons"] == [], f"{told['verdict']}: {told['reasons']}")
+    check("Armature good" in words and any("wind adds energy" in note for note in told["notes"]), f"{words} {told['notes']}")
+
+
+@case
+def a_fall_into_the_void_is_told():
+    arm, _ = fresh()
+    settings(by="FRAME", handover=45, use_return=False, ground=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    notes = report(arm)["notes"]
+    check(len(notes) == 1 and "Armature still falls at frame 150" in notes[0], f"{notes}")
+    # A floor seen from below, which the feet touch.
+    bpy.ops.mesh.primitive_plane_add(size=10)
+    floor = bpy.context.object
+    floor.data.flip_normals()
+    floor.sinew_body.collides = True
+    rigs.activate(arm)
+    settings(use_return=True, return_frame=130, return_blend=20)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    notes = report(arm)["notes"]
+    check(any("Armature still falls at frame 110" in note for note in notes), f"{notes}")
+    floor.data.flip_normals()
+    settings(ground=True)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"} and report(arm)["notes"] == [], f"{report(arm)['notes']}")
+
+
+@case
+def a_hit_is_drawn_and_findings_are_counted():
+    arm, _ = fresh()
+    arm.data.bones.active = arm.data.bones["torso_joint_3"]
+    bpy.ops.sinew.add_hit()
+    hit = bpy.data.objects["Hit torso_joint_3"]
+    bpy.context.view_layer.update()
+    lines = addon().overlay.hit_lines(hit)
+    tip = hit.matrix_world @ Vector((0, 0, hit.empty_display_size))
+    check((lines[0] - hit.matrix_world.translation).length < 1e-6 and (lines[1] - tip).length < 1e-6, f"its shaft is {lines[:2]}")
+    check(all((p - tip).length <= hit.empty_display_size + 1e-6 for p in lines), "and no line is longer than it")
+    hit.sinew_hit.enabled = False
+    check(addon().overlay.hit_lines(hit) == [], "disabled, it is Blender's own arrow")
+    arm.pose.bones["torso_joint_3"].sinew.mass = 900.0
+    bpy.ops.sinew.doctor()
+    counted = addon().panels.findings_of(bpy.context)
+    check(counted == str(len(arm.sinew.findings)) != "0", f"the header has {counted}")
 
 
 @case

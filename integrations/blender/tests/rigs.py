@@ -78,10 +78,15 @@ def scale_100():
     return activate(arm)
 
 
-def rigify_human():
+def rigify_face():
+    """As `rigify_human`, with face and fingers."""
+    return rigify_human(bpy.ops.object.armature_human_metarig_add)
+
+
+def rigify_human(make=bpy.ops.object.armature_basic_human_metarig_add):
     """A Rigify human with active IK controls, and skin made of a box along each deform bone."""
     addon_utils.enable("rigify", default_set=True)
-    bpy.ops.object.armature_basic_human_metarig_add()
+    make()
     meta = bpy.context.object
     bpy.ops.pose.rigify_generate()
     rig = next(ob for ob in bpy.data.objects if ob.type == "ARMATURE" and ob is not meta)
