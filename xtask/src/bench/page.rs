@@ -63,7 +63,7 @@ The same scenes on Sinew and on Rapier, Box3D and Jolt, each with its default se
 stretch and bodies sink has less to do, so a figure of quality stands beside each time. One tool measures it for all engines from the
 poses after each step.
 
-`cargo xtask bench` writes this page; do not edit it.
+Written by `cargo xtask bench`.
 ";
 
 const GLANCE: &str = "Processor time of the mean step in milliseconds, then the figure of quality.
