@@ -42,7 +42,9 @@ impl World {
         self.inner.run(|inner| {
             let count = count.unwrap_or(1.0);
             if !(0.0..=f64::from(u32::MAX)).contains(&count) || count.fract() != 0.0 {
-                return Err(Failure(format!("the number of steps must be whole and not negative, not {count}")));
+                return Err(Failure(format!(
+                    "the number of steps must be whole and not negative, not {count}"
+                )));
             }
             inner.step(count as u32);
             Ok(())
