@@ -3,9 +3,10 @@ scene holds them in the file."""
 
 import bpy
 
-from . import bodies
+from . import bodies, properties
 
-KEPT = ("definition", "fitted", "place", "rest", "report", "keyed", "own_pose", "own_action", "own_track", "made_action")
+# Names of a ragdoll's properties.
+KEPT = tuple(properties.Ragdoll.__annotations__)
 
 
 def armatures():

@@ -602,6 +602,16 @@ def a_blend_begins_after_the_hand_over():
     check(report(arm)["handover"] == 20, f"it falls at {report(arm)['handover']}")
 
 
+def returns(arm, names, handover, blend):
+    """From frame 80 on the keyed rig has its own animation again."""
+    own = posed(arm, names)
+    settings(by="FRAME", handover=handover, use_return=True, return_frame=80, return_blend=blend, keys="ACTION")
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it falls and returns")
+    back = posed(arm, names)
+    error = max(off(back[f], own[f], names) for f in range(80 - FIRST, len(own)))
+    check(error < 1e-4, f"after the return it is {error} m from its animation")
+
+
 @case
 def bones_without_keys_return():
     arm, names = fresh()
@@ -611,12 +621,7 @@ def bones_without_keys_return():
     for frame, angle in ((1, 0.0), (60, 0.5)):
         bone.rotation_euler.x = angle
         bone.keyframe_insert("rotation_euler", frame=frame)
-    own = posed(arm, names)
-    settings(by="FRAME", handover=20, use_return=True, return_frame=80, return_blend=1, keys="ACTION")
-    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it falls and returns")
-    back = posed(arm, names)
-    error = max(off(back[f], own[f], names) for f in range(80 - FIRST, len(own)))
-    check(error < 1e-4, f"after the return it is {error} m from its animation")
+    returns(arm, names, 20, 1)
 
 
 def in_edit_mode(arm, change):
@@ -634,12 +639,7 @@ def a_scale_by_axes_returns():
     bpy.context.view_layer.update()
     check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built")
     names = addon().skeleton.skeleton_of(arm).names
-    own = posed(arm, names)
-    settings(by="FRAME", handover=30, use_return=True, return_frame=80, return_blend=15, keys="ACTION")
-    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it falls and returns")
-    back = posed(arm, names)
-    error = max(off(back[f], own[f], names) for f in range(80 - FIRST, len(own)))
-    check(error < 1e-4, f"after the return it is {error} m from its animation")
+    returns(arm, names, 30, 15)
 
 
 @case
