@@ -242,7 +242,7 @@ fn gives_way(yields: Yields, contact: &Contact, [a, b]: [&Body; 2], dt: f32) -> 
     // A large impulse shows that an object behind the other body blocks it. A free body takes none above both limits.
     let took = contact.impulses().fold(0.0, |sum, (_, impulse)| sum + impulse);
     let squeezes = took > max(push, yields.max_impulse);
-    let jammed = shoves > 0.0 && (squeezes || contact.touching && closing > 0.0 && took > push);
+    let jammed = squeezes || shoves > 0.0 && contact.touching && closing > 0.0 && took > push;
     jammed
         || points.iter().any(|point| point.separation < -YIELDING_DEPTH)
         || mass * min(shoves, closing) > push

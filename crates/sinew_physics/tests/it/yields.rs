@@ -1,8 +1,9 @@
 //! Shapes that yield: kinematic bodies that push with a limited force.
 
-use crate::build::{box_body, floor, sphere_body};
+use crate::build::{ball as ball_joint, box_body, capsule_body, floor, sphere_body};
 use sinew_math::{Reader, Rotation, Vec3, Writer, max};
 use sinew_physics::*;
+use std::f32::consts::FRAC_PI_2;
 
 /// Adds a kinematic arm, an upright capsule of radius 0.1 m, with a velocity.
 fn arm(world: &mut World, at: Vec3, velocity: Vec3) -> BodyId {
@@ -88,6 +89,29 @@ fn a_body_jammed_against_a_wall_is_not_crushed() {
         assert!(sunk < 0.01, "the arm is {sunk} m inside the wall");
     }
     assert!((world.transform(load).translation.x).abs() < 0.02, "{}", world.transform(load).translation);
+}
+
+#[test]
+fn a_limb_driven_into_a_standing_arm_passes() {
+    let mut world = level();
+    arm(&mut world, Vec3::Y * 0.5, Vec3::ZERO);
+    let hip = Vec3::new(-0.7, 0.5, 0.0);
+    let mut driver = sphere_body(0.05, hip);
+    (driver.kind, driver.linear_velocity) = (BodyKind::Kinematic, Vec3::X * 2.0);
+    driver.shapes[0].rule = ContactRule::Ghost;
+    let driver = world.add_body(&driver);
+    let mut limb = capsule_body(0.15, 0.05, hip + Vec3::X * 0.2);
+    (limb.rotation, limb.linear_velocity) = (Rotation::from_axis_angle(Vec3::Z, FRAC_PI_2), Vec3::X * 2.0);
+    let limb = world.add_body(&limb);
+    let joint = world.add_joint(&ball_joint(&world, driver, limb, hip));
+    let (mut fastest, mut gap) = (0.0, 0.0);
+    for _ in 0..50 {
+        world.step();
+        fastest = max(fastest, world.velocity(limb).linear.length());
+        gap = max(gap, world.joint_gap(joint));
+    }
+    assert!(world.transform(limb).translation.x > 0.5, "the limb must pass the arm");
+    assert!(fastest < 15.0 && gap < 1e-5, "fastest {fastest} m/s, gap {gap} m");
 }
 
 #[test]
