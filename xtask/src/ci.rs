@@ -171,7 +171,7 @@ fn packages() -> Result<()> {
 fn large_scenes() -> Result<()> {
     let test = ["test", "--release", "--package", "sinew_scenes", "--test", "it"];
     command::run(command::cargo(&test).args(["--", "--ignored"]))?;
-    command::run(command::cargo(&test).args(["--", "at_any_frame_rate"]).env("SINEW_FULL", "1"))
+    command::run(command::cargo(&test).args(["--", "every_way_of_running"]).env("SINEW_FULL", "1"))
 }
 
 /// Runs the random worlds beyond the hundred of every test run, with progress output.

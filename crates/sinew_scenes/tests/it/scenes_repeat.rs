@@ -1,10 +1,13 @@
 //! Every scene gives the same bits in every way of running it; its settings are checked.
 
+use core::num::NonZero;
+use core::sync::atomic::{AtomicUsize, Ordering};
 use core::time::Duration;
 use sinew::math::{Random, Reader, Transform, Writer};
 use sinew::physics::stage::NoProfiler;
 use sinew::physics::{Threads, World, WorldDef};
 use sinew_scenes::scenes::{Instance, Scene, SettingError, find, registry};
+use std::thread::{self, available_parallelism};
 
 /// Returns the number of steps in which all bodies fall, hit and come to rest; fewer for scenes that are slow in
 /// debug builds.
@@ -24,78 +27,88 @@ fn started(scene: &Scene) -> Instance {
     scene.start(&settings)
 }
 
-/// The first second; in full runs all of [`steps`].
-fn first_steps(scene: &Scene) -> u64 {
-    if std::env::var_os("SINEW_FULL").is_some() { steps(scene) } else { u64::min(steps(scene), 60) }
-}
-
-fn stepped(scene: &Scene, steps: u64) -> Instance {
-    let mut run = started(scene);
-    for _ in 0..steps {
-        run.step();
-    }
-    run
-}
-
 fn poses(world: &World) -> Vec<Transform> {
     world.body_ids().map(|id| world.transform(id)).collect()
 }
 
-#[test]
-fn bits_repeat_on_a_second_run_and_with_threads() {
-    for scene in registry() {
-        let hash = stepped(scene, steps(scene)).world().hash();
-        assert_eq!(stepped(scene, steps(scene)).world().hash(), hash, "{} again", scene.name);
-        let mut threaded = started(scene);
-        for _ in 0..steps(scene) {
-            threaded.step_with(&Threads::new(2), &NoProfiler);
+/// Calls `check` with every scene, on all cores.
+fn with_every_scene(check: impl Fn(&Scene) + Sync) {
+    let next = AtomicUsize::new(0);
+    let worker = || {
+        while let Some(scene) = registry().get(next.fetch_add(1, Ordering::Relaxed)) {
+            check(scene);
         }
-        assert_eq!(threaded.world().hash(), hash, "{} with 2 threads", scene.name);
-    }
+    };
+    let workers = available_parallelism().map_or(1, NonZero::get);
+    thread::scope(|scope| (0..workers).for_each(|_| _ = scope.spawn(worker)));
+}
+
+/// Hashes after each step of a run, and the poses after the step in which the frame rates are compared.
+struct Reference {
+    hashes: Vec<u64>,
+    poses: Vec<Transform>,
 }
 
 #[test]
-fn bits_are_equal_at_any_frame_rate() {
-    for scene in registry() {
-        let steps = first_steps(scene);
-        let expected = poses(stepped(scene, steps).world());
-        for rate in [24, 60, 144] {
-            let mut run = started(scene);
-            let step = run.world().def().step_nanoseconds;
-            // The last frame is as long as needed for the same number of steps.
-            let mut left = steps * step;
-            while left > 0 {
-                let frame = u64::min(1_000_000_000 / rate, left);
-                run.update(Duration::from_nanos(frame));
-                left -= frame;
+fn bits_are_equal_in_every_way_of_running() {
+    with_every_scene(|scene| {
+        // The first second; in full runs all steps.
+        let full = std::env::var_os("SINEW_FULL").is_some();
+        let of_frames = if full { steps(scene) } else { u64::min(steps(scene), 60) };
+        let middle = steps(scene).div_ceil(20);
+        let (mut run, mut saved) = (started(scene), Writer::new());
+        let mut reference = Reference { hashes: Vec::new(), poses: Vec::new() };
+        for step in 1..=steps(scene) {
+            run.step();
+            reference.hashes.push(run.world().hash());
+            if step == middle {
+                run.save(&mut saved);
             }
-            assert_eq!(run.world().step_count(), steps);
-            assert!(poses(run.world()) == expected, "{}: other poses at {rate} frames a second", scene.name);
+            if step == of_frames {
+                reference.poses = poses(run.world());
+            }
         }
+        repeats_with_threads(scene, &reference);
+        continues_from_a_snapshot(scene, &reference, (middle, saved.as_bytes()));
+        repeats_at_any_frame_rate(scene, &reference, of_frames);
+    });
+}
+
+fn repeats_with_threads(scene: &Scene, reference: &Reference) {
+    let mut run = started(scene);
+    for (step, &hash) in reference.hashes.iter().enumerate() {
+        run.step_with(&Threads::new(2), &NoProfiler);
+        assert_eq!(run.world().hash(), hash, "{} with 2 threads, step {step}", scene.name);
     }
 }
 
-#[test]
-fn restored_run_continues_equally() {
-    for scene in registry() {
+fn continues_from_a_snapshot(scene: &Scene, reference: &Reference, (middle, saved): (u64, &[u8])) {
+    let mut run = started(scene);
+    run.load(&mut Reader::new(saved)).expect("it was just saved");
+    for (step, &hash) in reference.hashes.iter().enumerate().skip(middle as usize) {
+        run.step();
+        assert_eq!(run.world().hash(), hash, "{} restored, step {step}", scene.name);
+    }
+}
+
+fn repeats_at_any_frame_rate(scene: &Scene, reference: &Reference, steps: u64) {
+    for rate in [24, 60, 144] {
         let mut run = started(scene);
-        let (middle, end) = (steps(scene).div_ceil(20), steps(scene));
-        for _ in 0..middle {
-            run.step();
+        let step = run.world().def().step_nanoseconds;
+        // The last frame is as long as needed for the same number of steps.
+        let mut left = steps * step;
+        while left > 0 {
+            let frame = u64::min(1_000_000_000 / rate, left);
+            run.update(Duration::from_nanos(frame));
+            left -= frame;
         }
-        let mut saved = Writer::new();
-        run.save(&mut saved);
-        let mut restored = started(scene);
-        restored.load(&mut Reader::new(saved.as_bytes())).expect("it was just saved");
-        for step in middle..end {
-            run.step();
-            restored.step();
-            assert_eq!(restored.world().hash(), run.world().hash(), "{}, step {step}", scene.name);
-        }
+        assert_eq!(run.world().step_count(), steps);
+        let same = poses(run.world()) == reference.poses;
+        assert!(same, "{}: other poses at {rate} frames a second", scene.name);
     }
 }
 
-/// Like [`restored_run_continues_equally`], in a new world and on two threads. Scenes with their own functions or
+/// Saved at a random step, every scene continues equally in a new world and on two threads. Scenes with their own functions or
 /// objects are left out, because a new world does not have them.
 #[test]
 fn snapshot_loaded_into_an_unrelated_world_continues_equally() {
