@@ -55,6 +55,9 @@ impl<'a> Fall<'a> {
         object.append(&mut quality_json(&self.baked.quality));
         object.insert("verdict".into(), self.verdict.name().into());
         object.insert("reasons".into(), self.reasons.as_slice().into());
+        let moments = story::moments(self.input, &self.baked.events);
+        let events = moments.iter().map(|(time, what)| json!({ "at_s": number(*time), "what": what }));
+        object.insert("events".into(), events.collect());
         object.insert("hash".into(), format!("{:016x}", self.baked.hash).into());
         object.insert("outputs".into(), outputs.into());
         object.into()

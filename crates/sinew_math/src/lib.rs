@@ -92,6 +92,12 @@ pub fn normalize_or(v: Vec3, fallback: Vec3) -> Vec3 {
     if length > 1e-12 && length < f32::INFINITY { v / length } else { fallback }
 }
 
+/// Returns the direction and the length of a finite vector; zero has no direction. A length that overflows is `f32::MAX`.
+#[inline]
+pub fn direction_and_length(v: Vec3) -> (Vec3, f32) {
+    (normalize_or(v, direction(v).unwrap_or(Vec3::ZERO)), min(v.length(), f32::MAX))
+}
+
 /// Scales `v` to length 1, for any length; `None` if `v` is zero or not finite.
 #[inline]
 pub fn direction(v: Vec3) -> Option<Vec3> {

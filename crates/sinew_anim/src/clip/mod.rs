@@ -102,4 +102,45 @@ impl Clip {
         }
         clip
     }
+
+    /// Returns the clip played backwards, with the same name and duration.
+    pub fn reversed(&self) -> Self {
+        let channels = self.channels.iter().map(|channel| channel.reversed(self.duration)).collect();
+        Self { name: self.name.clone(), duration: self.duration, channels }
+    }
+}
+
+impl Channel {
+    /// Returns the channel of a clip of `duration` seconds played backwards.
+    fn reversed(&self, duration: f32) -> Self {
+        let width = self.property.width();
+        let per_key = if self.interpolation == Interpolation::CubicSpline { 3 * width } else { width };
+        let mut times: Vec<f32> = self.times.iter().rev().map(|time| duration - time).collect();
+        let mut keys: Vec<&[f32]> = self.values.chunks_exact(per_key).rev().collect();
+        let mut values = Vec::with_capacity(self.values.len());
+        match self.interpolation {
+            Interpolation::Linear => values.extend(keys.concat()),
+            Interpolation::Step => {
+                // The value before a key of the reversed clip is the one that holds after it.
+                if times[0] > 0.0 {
+                    times.insert(0, 0.0);
+                } else if keys.len() > 1 {
+                    keys.remove(0);
+                }
+                keys.extend(keys.last().copied());
+                values.extend(keys.concat());
+                values.truncate(times.len() * width);
+            }
+            Interpolation::CubicSpline => {
+                for key in keys {
+                    let (into, rest) = key.split_at(width);
+                    let (value, out) = rest.split_at(width);
+                    values.extend(out.iter().map(|tangent| -tangent));
+                    values.extend(value);
+                    values.extend(into.iter().map(|tangent| -tangent));
+                }
+            }
+        }
+        Self { times, values, ..*self }
+    }
 }

@@ -229,7 +229,9 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
     let (measure, sizes) = (if body.is_human() { body.height } else { body.size }, Sizes::of(body));
     let across = sizes.words[1];
     let kind = match body.species {
-        Some(Species::Animal(name, _)) if !body.humanoid => format!("a grown {name}"),
+        Some(Species::Animal(name, _)) if !body.humanoid => {
+            format!("a grown {name} (by the names of the file and in it)")
+        }
         _ => sizes.words[0].to_owned(),
     };
     let witnesses = Witnesses::of(body, hints, &sizes);

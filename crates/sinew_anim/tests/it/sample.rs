@@ -182,3 +182,33 @@ fn every_clip_of_every_rig_gives_finite_unit_poses() {
         }
     }
 }
+
+#[test]
+fn reversed_clip_passes_the_same_values_backwards() {
+    let cubic: Vec<f32> = (0..27).map(|i| trig::sin(3.0 * i as f32)).collect();
+    for (interpolation, values) in [
+        (Interpolation::Step, &STEPS[..]),
+        (Interpolation::Linear, &STEPS[..]),
+        (Interpolation::CubicSpline, &cubic[..]),
+    ] {
+        for times in [[0.0, 1.0, 2.0], [0.5, 0.7, 2.0]] {
+            for duration in [2.0, 2.5] {
+                let mut clip = clip(Property::Translation, interpolation, &times, values);
+                clip.duration = duration;
+                let back = clip.reversed();
+                for step in 0..40 {
+                    let time = 0.049 * step as f32 + 0.013;
+                    let place = |clip: &Clip, time: f32| at(clip, time, Wrap::Clamp).translation;
+                    let (there, here) = (place(&clip, time), place(&back, duration - time));
+                    assert!(
+                        (there - here).length() < 1e-4,
+                        "{interpolation:?} at {time}: {there} and {here}"
+                    );
+                }
+                assert_eq!(back.duration, duration);
+            }
+        }
+    }
+    let still = clip(Property::Translation, Interpolation::Step, &[0.0], &STEPS[..3]);
+    assert_eq!(still.reversed(), still);
+}

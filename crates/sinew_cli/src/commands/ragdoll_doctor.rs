@@ -100,7 +100,16 @@ impl RagdollDoctor {
         let findings = match &self.output {
             None => doctor(&repair),
             Some(output) => {
-                let (cured, findings) = cure(&repair);
+                let (mut cured, mut findings) = cure(&repair);
+                // The skin of a ragdoll with errors is only examined once they are repaired.
+                if let Some(character) = character.as_ref().filter(|_| repair.skin.is_empty()) {
+                    cured.skin = skin_flaws(&cured, character);
+                    let left = doctor(&cured);
+                    let is_new = |left: &Finding| {
+                        !findings.iter().any(|one| one.code == left.code && one.bones == left.bones)
+                    };
+                    findings.extend(left.into_iter().filter(is_new).collect::<Vec<_>>());
+                }
                 if repair.springs.iter().any(Option::is_some) {
                     notes.push("springs of joints are no part of a definition: they are not written".into());
                 }

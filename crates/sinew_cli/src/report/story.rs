@@ -91,7 +91,7 @@ pub fn moments(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(
             CharacterEvent::Caught { steps } => format!("has caught itself after {steps} steps"),
             CharacterEvent::WentLimp => "goes limp".to_owned(),
             CharacterEvent::Settled { since } => {
-                moments.push((since, "lies still".to_owned()));
+                moments.push((since, "comes to rest".to_owned()));
                 continue;
             }
             CharacterEvent::NeverSettled => "does not come to rest".to_owned(),

@@ -358,6 +358,29 @@ fn get_up_is_chosen_by_name_or_left_out() {
 }
 
 #[test]
+fn clip_that_ends_lying_is_played_backwards_to_get_up() {
+    let folder = Folder::new("death");
+    let whole = mannequin();
+    let walk = whole.clips[whole.motions.walk].clone();
+    let mut death = whole.clips[whole.motions.get_up_supine].reversed();
+    death.name = "Death".to_owned();
+    let file = folder.file("mortal.glb", glb(&whole.rig, &[walk.clone(), death]));
+    let out = folder.path("out.glb");
+    let arguments = ["bake", &file, "--seconds", "9", "-o", &out, "--json", "--no-builtin-motions"];
+    let down = sinew(&arguments).json();
+    assert!(down["up_s"].is_null());
+    let notes = down["notes"].to_string();
+    assert!(notes.contains("--get-up 'Death' plays that clip backwards"), "{notes}");
+    let arguments = [&arguments[..7], &["--get-up"]].concat();
+    let up = sinew(&[&arguments[..], &["Death"]].concat()).json();
+    assert!(!up["up_s"].is_null(), "{up}");
+    let notes = up["notes"].to_string();
+    assert!(notes.contains("it gets up by 'Death' played backwards"), "{notes}");
+    let line = sinew(&[&arguments[..], &[&walk.name]].concat()).refusal(1).to_owned();
+    assert!(line.contains("begins and ends standing"), "{line}");
+}
+
+#[test]
 fn character_in_place_of_a_definition_is_named() {
     let folder = Folder::new("definition");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));

@@ -8,7 +8,7 @@ use crate::def::RagdollDef;
 use crate::owner::{is_limb, together};
 use crate::ragdoll::BodyState;
 use sinew_anim::LocalTransform;
-use sinew_math::{Transform, Vec3, max, min, normalize_or};
+use sinew_math::{Transform, Vec3, direction_and_length, max, min, normalize_or};
 use sinew_physics::{BodyId, BodyKind, Hit, Push, Velocity, World};
 
 /// A hit by a contact.
@@ -172,8 +172,7 @@ impl Physique {
     /// Applies the impulse that a kinematic body stopped, shared along its chain by the striker's speed. The rest
     /// beyond the pelvis is lost.
     pub fn take_up(&self, def: &CharacterDef, body: usize, strike: Strike, world: &mut World) {
-        let way = normalize_or(strike.impulse, Vec3::ZERO);
-        let mut left = strike.impulse.length();
+        let (way, mut left) = direction_and_length(strike.impulse);
         for (body, share) in shares(&def.ragdoll, body, max(strike.speed, GIVES_WAY)) {
             let given = min(left, share);
             let id = self.limp().bodies[body];
@@ -196,8 +195,7 @@ impl Physique {
         point: Option<Vec3>,
         world: &mut World,
     ) -> f32 {
-        let way = normalize_or(impulse, Vec3::ZERO);
-        let mut left = impulse.length();
+        let (way, mut left) = direction_and_length(impulse);
         let whole: f32 = shares(&def.ragdoll, body, HIT_SPEED).map(|(_, share)| share).sum();
         let mut beyond = max(left - whole, 0.0);
         let mut work = 0.0;

@@ -2,7 +2,7 @@
 
 use super::CharacterDef;
 use sinew_anim::{Clip, LocalTransform, Wrap, local_to_model, sample};
-use sinew_math::{Affine, Transform, Vec3};
+use sinew_math::{Affine, Transform, Vec3, max, min};
 
 /// Names of get-up clips, without case, blanks, `-` and `_`.
 const NAMES: [&str; 3] = ["getup", "standup", "gettingup"];
@@ -29,16 +29,44 @@ impl CharacterDef {
             && end.iter().zip(STANDING).all(|(value, least)| *value > least)
     }
 
+    /// Returns the heights of the centre of mass over the lowest body at the start and the end of a clip, as shares of that in the
+    /// bind pose: about 1 standing, below 0.5 lying.
+    ///
+    /// # Panics
+    /// As [`sample`](sinew_anim::sample()).
+    pub fn heights_in(&self, clip: &Clip) -> [f32; 2] {
+        let bind: Vec<Transform> = self.ragdoll.bodies.iter().map(|body| body.character_from_body).collect();
+        let least = 1e-3 * self.ragdoll.height;
+        let upright = max(self.height_of_mass(&bind), least);
+        [0.0, clip.duration].map(|time| self.height_of_mass(&self.bodies_at(clip, time)) / upright)
+    }
+
+    /// Returns the height of the centre of mass over the lowest body, metres.
+    fn height_of_mass(&self, bodies: &[Transform]) -> f32 {
+        let parts = || bodies.iter().zip(&self.ragdoll.bodies);
+        let lowest = parts().map(|(body, _)| body.translation.y).fold(f32::INFINITY, min);
+        let (moment, mass) = parts().fold((0.0, 0.0), |(moment, mass), (body, def)| {
+            (moment + def.mass.mass * (body.translation.y - lowest), mass + def.mass.mass)
+        });
+        moment / mass
+    }
+
     /// Returns the uprightness of the pelvis (1 upright), and its height over that of the bind pose, at a time.
     fn posture(&self, clip: &Clip, time: f32) -> [f32; 2] {
+        let pelvis = self.bodies_at(clip, time)[0];
+        let bind = self.ragdoll.bodies[0].character_from_body;
+        let up = pelvis.rotation * (bind.rotation.inverse() * Vec3::Y);
+        [up.y, pelvis.translation.y / bind.translation.y]
+    }
+
+    /// Returns the bodies in the pose of a clip, character space.
+    fn bodies_at(&self, clip: &Clip, time: f32) -> Vec<Transform> {
         let mut pose: Vec<LocalTransform> = self.rest().to_vec();
         sample(clip, &self.rig, time, Wrap::Clamp, &mut pose);
         let (mut model, mut bodies) = (Vec::new(), Vec::new());
         local_to_model(&self.rig, &pose, &Affine::IDENTITY, &mut model);
         self.mapping().bodies_from_model(&model, Transform::IDENTITY, &mut bodies);
-        let bind = self.ragdoll.bodies[0].character_from_body;
-        let up = bodies[0].rotation * (bind.rotation.inverse() * Vec3::Y);
-        [up.y, bodies[0].translation.y / bind.translation.y]
+        bodies
     }
 }
 

@@ -136,7 +136,7 @@ fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     (!is_alike).then(|| {
         let reason = format!(
             "getting up it is drawn {times:.2} times as large as before its fall, for its clip scales {}; --clips FILE brings a clip to \
-             get up by that does so, too, --get-up none leaves it lying",
+             get up by that does so, too, `bake --get-up none` leaves it lying",
             first.bone
         );
         Fault::new(Verdict::Bad, reason)

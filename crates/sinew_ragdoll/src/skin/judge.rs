@@ -267,7 +267,7 @@ impl SkinQuality {
         let remedy = match stage {
             Stage::Standing => "--clip NAME plays a clip that stands on its floor, --at X,Y,Z moves it there",
             _ => {
-                "--clips FILE brings a clip to get up by that is made for this body, --get-up none leaves it lying"
+                "--clips FILE brings a clip to get up by that is made for this body, `bake --get-up none` leaves it lying"
             }
         };
         let flaw = names.flaw(FlawKind::OffFloor, flaw_text, remedy.to_owned(), lowest.as_slice());

@@ -379,8 +379,8 @@ fn push_part(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let body = part(a, n)?;
     let by = n.vector(4.0);
     let mass = a.world.mass(body).mass;
-    if n.chance(0.5) {
-        let impulse = by * mass;
+    let impulse = by * mass;
+    if n.chance(0.5) && impulse.is_finite() {
         call!(a.apply_impulse_at_center(body, impulse));
     } else {
         let velocity = Velocity { linear: by, angular: n.vector(5.0) };

@@ -100,8 +100,8 @@ pub struct Bake {
     /// motions
     #[arg(long)]
     no_builtin_motions: bool,
-    /// The clip by which it gets up, chosen as by --clip; 'none': it stays down. By default the get-up clip, among those of
-    /// the file and of --clips, that begins in the pose nearest to the lying one
+    /// The clip by which it gets up, chosen as by --clip; a clip that ends lying is played backwards; 'none': it stays down. By
+    /// default the get-up clip, among those of the file and of --clips, that begins in the pose nearest to the lying one
     #[arg(long, value_name = "NAME|none")]
     get_up: Option<String>,
     #[command(flatten)]

@@ -2,6 +2,7 @@
 
 use super::actor::GetsUpBy;
 use super::place::Place;
+use crate::report::table::shown;
 use sinew::math::Vec3;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyKinds, QueryFilter, World, WorldDef};
@@ -52,11 +53,17 @@ pub fn is_pushed(input: &BakeInput<'_>) -> String {
 /// Returns a note on motions that do not come from the file.
 fn borrows(events: &[(f32, CharacterEvent)], gets_up_by: &GetsUpBy) -> Option<String> {
     let rises = events.iter().any(|(_, event)| matches!(event, CharacterEvent::GettingUp { .. }));
-    (rises && *gets_up_by == GetsUpBy::Builtin).then(|| {
-        "it gets up by built-in motions, because it has no get-up clip: --clips adds some, \
-         --no-builtin-motions leaves it lying"
-            .to_owned()
-    })
+    match gets_up_by {
+        GetsUpBy::Builtin if rises => Some(
+            "it gets up by built-in motions, because it has no get-up clip: --clips adds some, \
+             --no-builtin-motions leaves it lying"
+                .to_owned(),
+        ),
+        GetsUpBy::Reversed(name) if rises => {
+            Some(format!("it gets up by '{}' played backwards, because that clip ends lying", shown(name)))
+        }
+        _ => None,
+    }
 }
 
 /// Returns a note on a fall that starts after the clip has ended.
