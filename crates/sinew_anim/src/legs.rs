@@ -142,7 +142,8 @@ fn strays(rig: &Rig, analysis: &RigAnalysis) -> Vec<Stray> {
 ///
 /// An ankle is a new joint at the end of the rig, without skin, at the centre of the lowest skin of the leg; a knee is
 /// one in the middle between hip and ankle. Their [`Joint::source`] is beyond the file's nodes. The analysis treats
-/// them as shank and foot. Returns the number of ankles added; a side without thigh gets none.
+/// them as shank and foot. A foot directly on the thigh becomes a part of that leg of one bone. Returns the number of
+/// ankles added; a side without thigh gets none.
 ///
 /// # Panics
 /// If the analysis does not fit the rig.
@@ -152,9 +153,19 @@ pub fn add_ankles(rig: &mut Rig, analysis: &mut RigAnalysis) -> usize {
     for side in [Side::Left, Side::Right] {
         let [thigh, shank, foot] = [Role::UpperLeg(side), Role::LowerLeg(side), Role::Foot(side)]
             .map(|role| analysis.joint_with(role));
-        let (true, Some(thigh), None) = (analysis.humanoid, thigh, foot) else { continue };
-        let last = shank.unwrap_or(thigh);
-        let Some(ankle) = end_of_leg(rig, analysis, last) else { continue };
+        let (true, Some(thigh)) = (analysis.humanoid, thigh) else { continue };
+        let low = match (shank, foot) {
+            (Some(_), Some(_)) => continue,
+            (Some(shank), None) => Some(shank).filter(|&shank| is_on_floor(rig, analysis, shank)),
+            (None, foot) => foot,
+        };
+        let end = match low {
+            Some(foot) => Some(analysis.bind_model[foot].translation),
+            None => end_of_leg(rig, analysis, shank.unwrap_or(thigh)),
+        };
+        let Some(ankle) = end else { continue };
+        low.into_iter().for_each(|foot| join(analysis, foot, thigh));
+        let shank = shank.filter(|_| low.is_none());
         let knee = (analysis.bind_model[thigh].translation + ankle) * 0.5;
         let shank = shank.or_else(|| add_joint(rig, analysis, thigh, Role::LowerLeg(side), knee));
         let Some(shank) = shank else { continue };
@@ -184,6 +195,21 @@ fn add_joint(
     let body = analysis.merge_into[parent].unwrap_or(parent);
     analysis.merge_into.push(Some(body));
     Some(rig.joints.len() - 1)
+}
+
+/// Makes a joint with its body a part of another's body.
+fn join(analysis: &mut RigAnalysis, joint: JointIdx, other: JointIdx) {
+    let body = analysis.merge_into[other].unwrap_or(other);
+    analysis.roles[joint] = None;
+    analysis.merge_into[joint] = Some(body);
+    let merged = analysis.merge_into.iter_mut().filter(|into| **into == Some(joint));
+    merged.for_each(|into| *into = Some(body));
+}
+
+/// True for a joint not higher above its lowest skin than an ankle: a foot.
+fn is_on_floor(rig: &Rig, analysis: &RigAnalysis, bone: JointIdx) -> bool {
+    let moves = |bound: Bound| bound.movers.contains(&bone);
+    end_of_leg(rig, analysis, bone).is_none() && Bound::of(rig).is_some_and(moves)
 }
 
 /// Mean of the lowest skin that the last bone of a leg moves most, raised to ankle height; model space, file units.

@@ -485,6 +485,11 @@ pub(crate) const STILL_UPRIGHT: f32 = 0.8;
 /// the tests of `faults`.
 pub(crate) const STILL_ON_LEGS: f32 = 0.25;
 
+/// The same share above which a creature lies on folded legs: it is pushed over if that lays it flat.
+///
+/// Larger: dogs kneel. Smaller: animals that lie on a side are pushed. Shown by the tests of `faults`.
+pub(crate) const LIES_FLAT: f32 = 0.12;
+
 /// Least share of the trunk's mass of a heavy part, 0 to 1.
 ///
 /// Larger: a rump of many bones counts as light. Smaller: a raised neck counts as standing. Shown by the tests of

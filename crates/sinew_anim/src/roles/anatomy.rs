@@ -1,6 +1,6 @@
 //! Combines evidence into roles: stated by the file, else by geometry, else by names, else generic.
 
-use super::assembly::{Carriers, bare_limbs, sides_agree};
+use super::assembly::{Carriers, bare_limbs, bare_twins, sides_agree};
 use super::axes::{feet_lead, left_by_name, possible_ups, snap};
 use super::bind::Bound;
 use super::characters::main_skeleton;
@@ -108,6 +108,14 @@ impl<'a> Scene<'a> {
             |joint: JointIdx| bound.area[joint] > 0.0 && main.as_ref().is_none_or(|main| main[joint]);
         let mut graph = Graph::of(rig, bound, moves_skin, |_| None)?;
         let mut symmetry = Symmetry::find(&graph, bound.size());
+        let twins = bare_twins(rig, bound, &graph, &symmetry);
+        let is_twin = |joint: JointIdx| twins.contains(&joint);
+        if !twins.is_empty()
+            && let Some(filled) = Graph::of(rig, bound, |joint| moves_skin(joint) || is_twin(joint), |_| None)
+        {
+            symmetry = Symmetry::find(&filled, bound.size());
+            graph = filled;
+        }
         let trust = Trust::of(&graph, &symmetry, &readings, bound);
         let is_named = rig.joints.iter().any(|joint| !joint.name.is_empty());
         notes.extend(trust.note().filter(|_| is_named));
@@ -130,7 +138,7 @@ impl<'a> Scene<'a> {
             let mut is_part: Vec<bool> = (0..readings.len())
                 .map(|joint| {
                     let is_body = readings[joint].part != Some(Part::Appendix) || is_bone(joint);
-                    moves_skin(joint) && is_body
+                    (moves_skin(joint) || is_twin(joint)) && is_body
                 })
                 .collect();
             bare_limbs(rig, bound, &readings).into_iter().for_each(|joint| is_part[joint] = true);
@@ -502,6 +510,9 @@ impl<'a> Scene<'a> {
             }
         }
         let parts = [Role::Spine, Role::Chest, Role::UpperChest];
+        if found.iter().all(|(role, _)| *role != Role::Head) {
+            found.extend(self.bare_head(&spine, &necks).map(|head| (Role::Head, head)));
+        }
         necks.truncate(1);
         found.extend(self.with_bare(&necks, Part::Neck).first().map(|&neck| (Role::Neck, neck)));
         let spine = self.with_bare(&spine, Part::Spine);
@@ -524,6 +535,16 @@ impl<'a> Scene<'a> {
             return None;
         }
         (!walks_on_hands).then_some(draft)
+    }
+
+    /// Returns the joint without skin that is named as the head and stands above a part of the spine or the neck.
+    fn bare_head(&self, spine: &[usize], necks: &[usize]) -> Option<JointIdx> {
+        let trunk = || spine.iter().chain(necks).map(|&node| self.graph.nodes[node].joint);
+        let is_head = |&joint: &JointIdx| {
+            let on_trunk = || ancestors(self.rig, joint).any(|above| trunk().any(|part| part == above));
+            self.readings[joint].part == Some(Part::Head) && self.bound.area[joint] <= 0.0 && on_trunk()
+        };
+        (0..self.readings.len()).find(is_head)
     }
 
     fn joint_in(&self, draft: &Draft, role: Role) -> Option<JointIdx> {

@@ -4,11 +4,12 @@
 //! without skin; and an asymmetric pose hides the mirrored pairs that the names show.
 
 use super::bind::Bound;
-use super::graph::ancestors;
+use super::graph::{Graph, ancestors};
 use super::names::{Part, Reading};
 use super::role::Side;
+use super::symmetry::Symmetry;
 use crate::rig::{JointIdx, Rig};
-use crate::roles::tuning::{LEAST_NAMED_PAIRS, NAMED_ALIKE};
+use crate::roles::tuning::{LEAST_NAMED_PAIRS, MIRROR_TOLERANCE, NAMED_ALIKE};
 use sinew_math::{Vec3, direction};
 
 const LONG: [Part; 4] = [Part::UpperArm, Part::LowerArm, Part::UpperLeg, Part::LowerLeg];
@@ -56,6 +57,28 @@ pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<
         }
     }
     found.into_iter().map(|(_, _, joint)| joint).collect()
+}
+
+/// Returns joints without skin inside a limb whose mirror image moves skin but has no counterpart in `graph`.
+pub(super) fn bare_twins(rig: &Rig, bound: &Bound, graph: &Graph, symmetry: &Symmetry) -> Vec<JointIdx> {
+    let moves = |joint: JointIdx| bound.area[joint] > 0.0;
+    let near = MIRROR_TOLERANCE * bound.size();
+    let place = |joint: JointIdx| bound.model[joint].translation;
+    let is_inside = |joint: JointIdx| {
+        let carries = |other: JointIdx| moves(other) && ancestors(rig, other).any(|above| above == joint);
+        ancestors(rig, joint).any(moves) && (0..rig.joints.len()).any(carries)
+    };
+    let single = |node: &usize| symmetry.partner[*node].is_none();
+    let alone: Vec<Vec3> = (0..graph.nodes.len())
+        .filter(single)
+        .map(|node| graph.nodes[node].position)
+        .filter(|at| symmetry.side_of(*at).abs() > near)
+        .map(|at: Vec3| at - symmetry.lateral * (2.0 * symmetry.side_of(at)))
+        .collect();
+    let is_twin = |joint: &JointIdx| {
+        !moves(*joint) && alone.iter().any(|at| (place(*joint) - *at).length() < near) && is_inside(*joint)
+    };
+    (0..rig.joints.len()).filter(is_twin).collect()
 }
 
 /// Returns the limb of a part and its position in the limb, from the trunk outward; `None` for other parts.

@@ -138,7 +138,8 @@ impl Graph {
     }
 
     /// True for a left and a right tree: equal numbers of joints, similar areas of skin, starts equally far from the
-    /// root but in different places.
+    /// root, and starts or middles in different places. Of trees that start in one place the middles are also equally
+    /// far from it.
     fn are_twins(&self, a: usize, b: usize, bound: &Bound) -> bool {
         let [of_a, of_b] = [a, b].map(|tree| self.subtree(tree));
         let area = |tree: &[usize]| tree.iter().map(|&node| self.nodes[node].area).sum::<f32>();
@@ -146,10 +147,18 @@ impl Graph {
             (sinew_math::max(area(&of_a), area(&of_b)), sinew_math::min(area(&of_a), area(&of_b)));
         let away = |tree: usize| self.distance(self.root, tree);
         let near = TWIN_PLACE * bound.size();
+        let middle = |tree: &[usize]| {
+            tree.iter().map(|&node| self.nodes[node].position).sum::<Vec3>() / tree.len() as f32
+        };
+        let spread = || {
+            let [start, end_a, end_b] = [self.nodes[a].position, middle(&of_a), middle(&of_b)];
+            let lengths = [end_a, end_b].map(|end| (end - start).length());
+            (end_a - end_b).length() > near && (lengths[0] - lengths[1]).abs() < near
+        };
         of_a.len() == of_b.len()
             && less > TWIN_AREA * more
             && (away(a) - away(b)).abs() < near
-            && self.distance(a, b) > near
+            && (self.distance(a, b) > near || spread())
     }
 
     /// Attaches feet to their leg that are parented to the root, as for IK: those at the end of a leg, or whose skin is

@@ -5,7 +5,9 @@ use super::bind::Bound;
 use super::graph::Graph;
 use super::names::{Part, Reading};
 use super::symmetry::Symmetry;
-use crate::roles::tuning::{AS_HIGH, AT_SHOULDER, AT_WRIST, FORKED, INNER_END, LONGEST_PALM, LOWEST_HIP};
+use crate::roles::tuning::{
+    AS_HIGH, AT_SHOULDER, AT_WRIST, FORKED, INNER_END, LONGEST_PALM, LOWEST_HIP, SHORT_BONE, SIDEWAYS,
+};
 use sinew_math::{Vec3, clamp, max, min, trig};
 
 /// Directions and sizes of the bind pose if `up` is the up axis.
@@ -205,7 +207,7 @@ impl Evidence<'_> {
         let reaches_floor = |chain: &[usize]| {
             let lowest = chain.iter().map(|&i| self.level(i)).fold(f32::INFINITY, min);
             // Without a foot joint the chain ends at the knee.
-            let limit = if chain.len() > 2 + usize::from(self.begins_inside(chain)) { 0.2 } else { 0.35 };
+            let limit = if chain.len() > 2 + self.inner_ends(chain, true) { 0.2 } else { 0.35 };
             chain.len() > 1 && lowest < limit && (LOWEST_HIP..0.75).contains(&self.level(chain[0]))
         };
         let low: Vec<usize> = (0..limbs.len()).filter(|&i| reaches_floor(&limbs[i][0])).collect();
@@ -331,10 +333,21 @@ impl Evidence<'_> {
         Some((chain, head))
     }
 
-    /// True for a limb whose first joint is on the midline and its second is not: the inner end of a clavicle or a hip.
-    fn begins_inside(&self, chain: &[usize]) -> bool {
+    /// Number of joints before the first long bone of a limb: inner ends of clavicles or hips. Such a joint is on the
+    /// midline, or its bone is short; in a leg the bone also points sideways.
+    fn inner_ends(&self, chain: &[usize], leg: bool) -> usize {
         let side = |place: usize| self.symmetry.side(self.graph, chain[place]).abs();
-        chain.len() > 2 && side(0) < INNER_END * side(1)
+        let length = |place: usize| self.graph.distance(chain[place], chain[place + 1]);
+        let on_midline = |place: usize| place == 0 && side(0) < INNER_END * side(1);
+        let is_stub = |place: usize| {
+            let sideways = side(place + 1) - side(place) > SIDEWAYS * length(place);
+            length(place) < SHORT_BONE * length(place + 1) && (!leg || sideways)
+        };
+        let mut count = 0;
+        while chain.len() > count + 2 && (on_midline(count) || is_stub(count)) {
+            count += 1;
+        }
+        count
     }
 
     /// Indices in a chain of the upper part, the lower part, and the hand or foot: by name, else by length.
@@ -347,14 +360,11 @@ impl Evidence<'_> {
             }
         }
         let leg = parts[2] == Part::Foot;
-        if chain.len() == 3 && self.begins_inside(chain) {
-            return Some((1, 2, None));
-        }
-        match chain.len() {
+        let from = self.inner_ends(chain, leg);
+        match chain.len() - from {
             0 | 1 => None,
-            2 => Some((0, 1, None)),
-            3 => Some((0, 1, Some(2))),
-            4 if leg => Some((0, 1, Some(2))),
+            2 => Some((from, from + 1, None)),
+            _ if chain.len() == 3 || leg && chain.len() == 4 => Some((from, from + 1, Some(from + 2))),
             _ => Some(self.split_by_length(chain)),
         }
     }

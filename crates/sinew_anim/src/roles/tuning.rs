@@ -216,6 +216,16 @@ pub(crate) const LOWEST_HIP: f32 = 0.1;
 /// midline count as thighs. Shown by the tests of `assembly`.
 pub(crate) const INNER_END: f32 = 0.1;
 
+/// Largest length of the bone of a clavicle or a hip, as a share of the next bone's length.
+///
+/// Larger: short upper arms count as clavicles. Smaller: clavicles count as upper arms. Shown by the tests of `lost`.
+pub(crate) const SHORT_BONE: f32 = 0.35;
+
+/// Least share of a hip bone's length that points away from the midline.
+///
+/// Larger: slanted hip bones count as thighs. Smaller: short, spread thighs count as hips. Shown by the tests of `lost`.
+pub(crate) const SIDEWAYS: f32 = 0.8;
+
 // roles/keep.rs
 
 /// Least share of all skin for a body of a creature, 0 to 1.

@@ -1,5 +1,5 @@
 //! Humans with one unusual part: low arms, a head beside the skeleton, arms without skin, legs that start
-//! beside a hand, legs of one bone.
+//! beside a hand, legs of one bone, hip bones, a head without skin.
 
 use crate::toy;
 use sinew_anim::legs::{Legs, add_ankles};
@@ -49,6 +49,100 @@ fn has_roles(rig: &Rig, roles: &[&str]) {
         let holder = found.joint_with(role).map(|joint| rig.joints[joint].name.as_str());
         assert_eq!(holder, Some(rig.joints[part(name)].name.as_str()), "{name}");
     }
+}
+
+/// Moves the joints of both legs one further down: a hip bone at `inner` from the midline, a thigh, a shank without a
+/// foot.
+fn with_hip_bones(rig: &mut Rig, inner: f32) {
+    for (side, x) in [("left", 1.0), ("right", -1.0)] {
+        let [hip, thigh, shank] = ["UpperLeg", "LowerLeg", "Foot"].map(|name| part(&format!("{side}{name}")));
+        put(rig, hip, Vec3::new(inner * x, 0.95, 0.0), 1.0);
+        put(rig, thigh, Vec3::new(0.1 * x, 0.93, 0.0), 1.0);
+        put(rig, shank, Vec3::new(0.1 * x, 0.5, 0.0), 1.0);
+        let low = rig.meshes[0].primitives[0].positions[4 * shank..4 * shank + 4].iter_mut();
+        low.for_each(|corner| corner.y -= 0.4);
+    }
+}
+
+fn has_legs_below_hip_bones(rig: &Rig) {
+    let found = analyze(rig).expect("a skin");
+    assert!(found.humanoid, "{:?}", found.notes);
+    for side in [Side::Left, Side::Right] {
+        let name = if side == Side::Left { "left" } else { "right" };
+        let holds = |role: Role, joint: &str| {
+            assert_eq!(found.joint_with(role), Some(part(&format!("{name}{joint}"))), "{role:?}");
+        };
+        holds(Role::UpperLeg(side), "LowerLeg");
+        holds(Role::LowerLeg(side), "Foot");
+    }
+}
+
+/// A machine without a head has its named neck and head without skin, and its limbs are asymmetric.
+#[test]
+fn named_head_without_skin_is_a_head() {
+    let mut rig = toy::body(Role::name);
+    let chest = u16::try_from(part("chest")).expect("few");
+    let bare = ["neck", "head"].map(part);
+    let slots = rig.meshes[0].primitives[0].joints.iter_mut();
+    slots.filter(|slots| bare.contains(&usize::from(slots[0]))).for_each(|slots| slots[0] = chest);
+    has_roles(&rig, &LONG);
+    has_roles(&rig, &["hips", "head"]);
+}
+
+/// A foot directly on a leg of one bone belongs to that bone; knee and ankle are added.
+#[test]
+fn foot_on_a_leg_of_one_bone_gets_a_knee() {
+    let mut rig = numbered();
+    for (side, x) in [("left", 0.1), ("right", -0.1)] {
+        let [thigh, shank, foot] =
+            ["UpperLeg", "LowerLeg", "Foot"].map(|name| part(&format!("{side}{name}")));
+        put(&mut rig, foot, Vec3::new(x, 0.05, 0.0), 0.5);
+        let slots = rig.meshes[0].primitives[0].joints.iter_mut();
+        slots.filter(|slots| usize::from(slots[0]) == shank).for_each(|slots| {
+            slots[0] = u16::try_from(thigh).expect("few");
+        });
+        rig.joints[foot].parent = Some(thigh);
+    }
+    rest_as_bound(&mut rig);
+    let mut found = analyze(&rig).expect("a skin");
+    assert!(found.humanoid, "{:?}", found.notes);
+    assert_eq!(add_ankles(&mut rig, &mut found), 2);
+    let [thigh, foot] = ["leftUpperLeg", "leftFoot"].map(part);
+    let place = |role: Role| found.bind_model[found.joint_with(role).expect("added")].translation;
+    assert_eq!(found.joint_with(Role::UpperLeg(Side::Left)), Some(thigh));
+    assert_eq!(found.merge_into[foot], Some(thigh));
+    assert!((place(Role::Foot(Side::Left)) - found.bind_model[foot].translation).length() < 1e-4);
+    assert!(Legs::of(&rig, &found).expect("legs").are_stiff(&rig));
+}
+
+/// Short hip bones beside the midline carry legs of two bones.
+#[test]
+fn short_sideways_bones_are_no_thighs() {
+    let mut rig = numbered();
+    with_hip_bones(&mut rig, 0.03);
+    has_legs_below_hip_bones(&rig);
+}
+
+/// Both hip bones are roots and start at one place.
+#[test]
+fn legs_that_start_in_one_place_are_twins() {
+    let mut rig = numbered();
+    with_hip_bones(&mut rig, 0.0);
+    hang(&mut rig, "leftUpperLeg", None);
+    hang(&mut rig, "rightUpperLeg", None);
+    has_legs_below_hip_bones(&rig);
+}
+
+/// One forearm has no skin; its mirror image has.
+#[test]
+fn bare_bone_counts_if_its_mirror_image_has_skin() {
+    let mut rig = numbered();
+    let [upper, lower] = ["leftUpperArm", "leftLowerArm"].map(part);
+    let slots = rig.meshes[0].primitives[0].joints.iter_mut();
+    slots.filter(|slots| usize::from(slots[0]) == lower).for_each(|slots| {
+        slots[0] = u16::try_from(upper).expect("few");
+    });
+    has_roles(&rig, &LONG);
 }
 
 const LONG: [&str; 8] = [

@@ -6,8 +6,8 @@ use crate::character::{CharacterEvent, State};
 use crate::def::{RagdollBodyDef, RagdollDef};
 use crate::skin::surface::Surface;
 use crate::tuning::{
-    FALLEN_OUT, GROUND_REACH, HEAVY_PART, NEVER_STILL, OFF_FLOOR, ON_A_SIDE, OTHER_SIZE, STARTS_INSIDE,
-    STILL_ON_LEGS, STILL_UPRIGHT, TOPPLES, WALKS_ON_AIR, WALKS_ON_AIR_FOR,
+    FALLEN_OUT, GROUND_REACH, HEAVY_PART, LIES_FLAT, NEVER_STILL, OFF_FLOOR, ON_A_SIDE, OTHER_SIZE,
+    STARTS_INSIDE, STILL_ON_LEGS, STILL_UPRIGHT, TOPPLES, WALKS_ON_AIR, WALKS_ON_AIR_FOR,
 };
 use sinew_anim::{LocalTransform, Rig, Role, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, min, trig};
@@ -289,26 +289,37 @@ fn never_still(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     })
 }
 
-/// Returns the input of a bake with the weakest [push](BakeInput::topple) that fells the character: forward, or
-/// sideways for a creature on its legs. `None` if the character does not stay upright when it goes limp, or no push
-/// fells it.
+/// Returns the input of a bake with the weakest [push](BakeInput::topple) after which the character lies flat: forward,
+/// or sideways for a creature on its legs, also on folded ones. If it stays upright or on its legs and no push lays it
+/// flat, returns the weakest that fells it. `None` if it lies flat without a push, or no push helps.
 ///
 /// # Panics
 /// If the bake does not belong to the input.
 pub fn toppled<'a>(input: &BakeInput<'a>, baked: &Baked) -> Option<BakeInput<'a>> {
     let forward = input.world_from_character.rotation * Vec3::Z;
     let sideways = input.world_from_character.rotation * Vec3::X;
+    let held = held_on_legs(input, baked).map_or(0.0, |held| held.share());
     let way = if stays_upright(input, baked).is_some() {
         forward
+    } else if held > LIES_FLAT {
+        sideways
     } else {
-        stays_on_legs(input, baked).map(|_| sideways)?
+        return None;
     };
     let speed = (input.world.gravity.length() * input.character.ragdoll.height).sqrt();
-    TOPPLES.into_iter().find_map(|share| {
+    let mut fallen = None;
+    for share in TOPPLES {
         let pushed = BakeInput { topple: way * (share * speed), ..input.clone() };
-        let falls = stays_standing(&pushed, &bake(&pushed)).is_none();
-        falls.then_some(pushed)
-    })
+        let result = bake(&pushed);
+        if stays_standing(&pushed, &result).is_some() {
+            continue;
+        }
+        if held_on_legs(&pushed, &result).is_none_or(|held| held.share() <= LIES_FLAT) {
+            return Some(pushed);
+        }
+        fallen = fallen.or(Some(pushed));
+    }
+    fallen.filter(|_| stays_standing(input, baked).is_some())
 }
 
 /// Returns a fault if a limp body does not fall.
@@ -378,8 +389,25 @@ fn stronger(input: &BakeInput<'_>) -> &'static str {
     if input.hits.is_empty() { "--hit" } else { "a stronger --hit" }
 }
 
-/// Returns a fault if a heavy part of the trunk of a creature that stood on its legs is held off the floor at rest.
-fn stays_on_legs(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+/// Height of a creature's trunk over the floor while limp.
+struct OnLegs {
+    /// Body of the trunk that is held highest at rest.
+    body: usize,
+    /// Mean height of the trunk at release, metres.
+    begins: f32,
+    /// Height of `body` at rest, metres.
+    ends: f32,
+}
+
+impl OnLegs {
+    /// Height at rest as a share of that at release.
+    fn share(&self) -> f32 {
+        self.ends / self.begins
+    }
+}
+
+/// Returns how high the trunk of a creature that stood on its legs is held at rest.
+fn held_on_legs(input: &BakeInput<'_>, baked: &Baked) -> Option<OnLegs> {
     let def = &input.character.ragdoll;
     let floor = input.world_from_character.translation.y;
     // The hind part of a trunk may count as the root of the tail, or as that of a limb with two legs on it.
@@ -409,10 +437,18 @@ fn stays_on_legs(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     };
     let heavy = trunk.iter().filter(|&&i| share(i) > HEAVY_PART);
     let (ends, body) = heavy.map(|&i| (held(i), i)).reduce(|a, b| if b.0 > a.0 { b } else { a })?;
-    (begins > OFF_FLOOR * def.height && ends > STILL_ON_LEGS * begins).then(|| {
-        let bone = &def.bodies[body].bone;
+    (begins > OFF_FLOOR * def.height).then_some(OnLegs { body, begins, ends })
+}
+
+/// Returns a fault if a heavy part of the trunk of a creature that stood on its legs is held off the floor at rest.
+fn stays_on_legs(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+    let held = held_on_legs(input, baked)?;
+    (held.share() > STILL_ON_LEGS).then(|| {
+        let bone = &input.character.ragdoll.bodies[held.body].bone;
         let reason = format!(
-            "limp, it stays on its legs: {bone} is {ends:.2} m over the floor, its trunk {begins:.2} m when it was let go; {} pushes it over",
+            "limp, it stays on its legs: {bone} is {:.2} m over the floor, its trunk {:.2} m when it was let go; {} pushes it over",
+            held.ends,
+            held.begins,
             stronger(input)
         );
         Fault::new(Verdict::Usable, reason)

@@ -2,7 +2,7 @@
 
 use sinew_anim::{Hints, Joint, LocalTransform, Primitive, Rig, RigMesh, Skin, analyze, analyze_hinted};
 use sinew_math::{Affine, Rotation, Vec3};
-use sinew_physics::{BodyDef, Shape};
+use sinew_physics::{BodyDef, JointKind, Shape};
 use sinew_ragdoll::quality::{Doubt, faults_of_bake, faults_of_ragdoll, toppled};
 use sinew_ragdoll::{
     AfterSettling, BakeInput, Baked, BuildOptions, CharacterDef, Locomotion, MotionSet, RagdollBodyDef,
@@ -260,7 +260,12 @@ fn animal(rust: f32) -> CharacterDef {
 
 /// Returns the animal of a file of this name.
 fn animal_named(name: &str, rust: f32) -> CharacterDef {
-    let legs = |z: f32| [0.13, -0.13].map(|x| Vec3::new(x, 0.4, z));
+    animal_on(name, rust, [0.4, 0.06])
+}
+
+/// Returns the animal with legs of this length and half thickness.
+fn animal_on(name: &str, rust: f32, [length, thickness]: [f32; 2]) -> CharacterDef {
+    let legs = |z: f32| [0.13, -0.13].map(|x| Vec3::new(x, length, z));
     let mut places = vec![(None, Vec3::ZERO)];
     places.extend([(Some(0), Vec3::new(0.0, 0.5, -0.3)), (Some(1), Vec3::new(0.0, 0.5, 0.3))]);
     places.extend(legs(0.5).map(|place| (Some(2), place)));
@@ -275,7 +280,10 @@ fn animal_named(name: &str, rust: f32) -> CharacterDef {
         match i {
             0 => {}
             1 | 2 => block(&mut skinned, place, Vec3::new(0.18, 0.12, 0.3), slot),
-            _ => block(&mut skinned, place - Vec3::Y * 0.2, Vec3::new(0.06, 0.2, 0.06), slot),
+            _ => {
+                let half = Vec3::new(thickness, 0.5 * length, thickness);
+                block(&mut skinned, place - Vec3::Y * half.y, half, slot);
+            }
         }
     }
     let inverse_bind =
@@ -321,6 +329,21 @@ fn animal_on_its_legs_is_pushed_over_sideways() {
     let pushed = toppled(&input, &bake(&input)).expect("a push fells it");
     assert!(pushed.topple.x.abs() > 0.5 && pushed.topple.z.abs() < 1e-3, "sideways: {}", pushed.topple);
     assert_eq!(faults_of_bake(&pushed, &bake(&pushed)), []);
+}
+
+/// An animal that kneels on folded legs is no fault, but it is pushed over sideways, because that lays it flat.
+#[test]
+fn animal_on_folded_legs_is_pushed_flat() {
+    let mut character = animal_on("", 0.0, [0.34, 0.04]);
+    character.after_settling = AfterSettling::StayDown;
+    let hips = character.ragdoll.joints.iter_mut().skip(1);
+    hips.for_each(|hip| hip.kind = JointKind::Ball { limit: None });
+    let ground = [BodyDef::fixed(Shape::HalfSpace)];
+    let kneels = BakeInput { topple: Vec3::Z, ..limp_for_6_s(character, &ground) };
+    let found = faults_of_bake(&kneels, &bake(&kneels));
+    assert!(found.iter().all(|fault| !fault.reason.contains("stays")), "{found:?}");
+    let pushed = toppled(&kneels, &bake(&kneels)).expect("a push lays it flat");
+    assert!(pushed.topple.x.abs() > 0.5 && pushed.topple.z.abs() < 1e-3, "sideways: {}", pushed.topple);
 }
 
 /// A rump that is recognised as the root of a limb with two legs on it counts as trunk: held off the floor, it is a

@@ -44,7 +44,7 @@ pub fn stands_at(place: &Place, world: &str) -> Option<String> {
 pub fn is_pushed(input: &BakeInput<'_>) -> String {
     let time = input.limp_at.unwrap_or(0.0);
     format!(
-        "limp alone it stays on its feet: it is pushed over at {time} s, its highest point by {:.1} m/s; --limp-at {time} leaves out the push, \
+        "limp alone it stays on its feet or kneels: it is pushed over at {time} s, its highest point by {:.1} m/s; --limp-at {time} leaves out the push, \
          --hit sets another",
         input.topple.length()
     )
