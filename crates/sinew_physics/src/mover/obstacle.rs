@@ -223,5 +223,5 @@ fn into_frame(bounds: &Aabb, world_from_frame: &Transform) -> Aabb {
     let half = bounds.half_extents();
     let axes = [Vec3::X * half.x, Vec3::Y * half.y, Vec3::Z * half.z].map(|axis| abs3(to_frame * axis));
     let center = world_from_frame.inverse_point(bounds.center());
-    thick(&Aabb::around(center, axes[0] + axes[1] + axes[2]))
+    thick(&Aabb::reaching(center, axes[0] + axes[1] + axes[2]))
 }

@@ -285,6 +285,9 @@ impl Proxies {
                 for shape in 0..home.count {
                     self.reach[(home.first + shape) as usize] = grown(body, shape, 0.0);
                 }
+            } else if home.count > 0 && body.kind == BodyKind::Dynamic && !body.is_active() {
+                // A body put to sleep by the user is searched although it does not move: its earlier pose is not that of the last search.
+                self.traces[home.first as usize] = Trace::NONE;
             }
         }
     }
