@@ -36,6 +36,7 @@
 //! | `pictures` | base colour pictures of files, for `Textures::Decode` | no |
 //! | `fbx` | FBX files among those; compiles C | no |
 //! | `parallel` | `all_threads`: a world stepped by every core of the machine | yes |
+//! | `sse2` | kernels for x86-64 processors without AVX2, in builds without debug assertions; a third of the compile time | yes |
 //! | `serde` | `Serialize` and `Deserialize` for definitions (`BodyDef`, `JointDef` ...) | no |
 #![forbid(unsafe_code)]
 

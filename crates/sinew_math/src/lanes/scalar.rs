@@ -112,7 +112,7 @@ impl Real for f64 {
 }
 
 /// Eight `f32`, each handled like `f32`. Operations are calls: inlined eight times at each use, they would make
-/// kernels more than twice as large and no faster. wasm32 without simd128 and development builds use this type: see
+/// kernels more than twice as large and no faster. wasm32 without simd128 uses this type: see
 /// [`dispatch`](crate::dispatch).
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar([f32; WIDTH]);
