@@ -77,7 +77,7 @@ impl Faces {
     /// there are any and there is room.
     fn take_surface(&mut self, surface: &Surface<'_>, p: Vec3, reach: f32) -> bool {
         let mut fits = true;
-        surface.overlapping(&Aabb::around(p, Vec3::splat(reach)), |triangle| {
+        surface.overlapping(&Aabb::reaching(p, Vec3::splat(reach)), |triangle| {
             let (nearest, _) = closest_on_triangle(&triangle.corners, p);
             if (nearest - p).length() <= reach {
                 fits &= self.take_triangle(&triangle, p, reach);

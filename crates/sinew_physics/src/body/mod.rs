@@ -18,7 +18,7 @@ use crate::body::owner::OwnerMark;
 use crate::body::shape::{MassProperties, Shape, ShapeDef};
 use crate::body::surface::{Surface, Surfaces};
 use crate::id::BodyId;
-use sinew_math::{Rotation, Sym3, Transform, Vec3};
+use sinew_math::{Rotation, Sym3, Transform, Vec3, clamp};
 
 /// Linear velocity of the centre of mass and angular velocity, world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,6 +44,13 @@ impl Velocity {
     /// True if both velocities are zero.
     pub fn is_zero(&self) -> bool {
         self.linear == Vec3::ZERO && self.angular == Vec3::ZERO
+    }
+
+    /// Limits each component to `most`, m/s or rad/s.
+    pub(crate) fn bound(&mut self, most: f32) {
+        for component in self.linear.as_mut().iter_mut().chain(self.angular.as_mut()) {
+            *component = clamp(*component, -most, most);
+        }
     }
 
     /// Velocity of a point at `arm` from the centre of mass, m/s.

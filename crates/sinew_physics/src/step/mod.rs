@@ -22,6 +22,7 @@ use crate::mover;
 use crate::solver::{Pace, View};
 use crate::stage::{Stage, zone};
 use crate::step::pinched::Around;
+use crate::step::tuning::FASTEST_KINEMATIC;
 use crate::user_object::lockstep;
 use crate::world::World;
 
@@ -33,6 +34,9 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
 
     stage(Stage::Pairs, &mut || {
+        for &index in activity.kinematic() {
+            bodies.at_mut(index).velocity.bound(FASTEST_KINEMATIC);
+        }
         activity.wake_struck(bodies, groups, &broad.proxies, def);
         activity.wake_groups(bodies, groups, &broad.proxies, objects.let_sleep(), def);
         broad.blows.find(bodies, joints, activity);

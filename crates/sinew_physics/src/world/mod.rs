@@ -343,7 +343,8 @@ impl World {
         self.expect(id).velocity
     }
 
-    /// Sets the velocity of a dynamic or kinematic body; the body wakes. No effect on a static body.
+    /// Sets the velocity of a dynamic or kinematic body; the body wakes. No effect on a static body. The step limits the
+    /// components of a kinematic body's velocity to 1e6 m/s and 1e6 rad/s.
     #[track_caller]
     #[doc(alias = "set_linvel")]
     #[doc(alias = "set_angvel")]

@@ -57,9 +57,17 @@ pub struct Watch {
     below: BTreeMap<BodyId, (u32, f32)>,
     /// Number of steps since the last deed that changes something.
     quiet: u32,
-    energy: Option<Energy>,
+    energy: Option<(Energy, f32)>,
     /// Largest rise of energy, as a share of the allowed rise.
     pub rise: f32,
+}
+
+/// Energy that free fall conserves, less the energy, J: symplectic Euler conserves `E + ½ h m g·v`, so a bounce raises `E`.
+fn integrator_lag(world: &World) -> f32 {
+    let def = world.def();
+    let h = def.dt() / def.substeps as f32;
+    let lag = |id| world.mass(id).mass * world.gravity_scale(id) * def.gravity.dot(world.velocity(id).linear);
+    0.5 * h * world.body_ids().map(lag).sum::<f32>()
 }
 
 /// Number of steps after a deed after which energy is checked.
@@ -203,8 +211,8 @@ impl Watch {
     /// Checks that energy rises by no more than the work.
     fn energy(&mut self, actor: &Actor) -> Result<(), Fault> {
         let world = &actor.world;
-        let now = world.energy();
-        let Some(before) = self.energy.replace(now) else { return Ok(()) };
+        let (now, lag) = (world.energy(), integrator_lag(world));
+        let Some((before, lag_before)) = self.energy.replace((now, lag)) else { return Ok(()) };
         if self.quiet < SETTLED || actor.more.drives() || !is_passive(world) || is_torn(world) {
             return Ok(());
         }
@@ -212,6 +220,7 @@ impl Watch {
         let all: f32 = world.body_ids().map(|id| world.body_energy(id).potential.abs()).sum();
         let work = world.work();
         let rise = now.total() - before.total() - sinew_math::max(work.total(), 0.0);
+        let rise = sinew_math::min(rise, rise + lag - lag_before);
         let share = if is_strained(world) { STRAINED } else { RISE };
         let allowed =
             share * sinew_math::max(before.kinetic, mass) + ROUNDING * (all + before.potential.abs());
