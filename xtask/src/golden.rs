@@ -209,7 +209,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn new_gone_and_different_scenes_are_reported() {
+    fn added_removed_and_different_scenes_are_reported() {
         let committed = parse("a 10 aa\nb 20 bb\nc 30 cc\n").expect("well formed");
         assert_eq!(differences(&committed, &committed), [""; 0]);
         let found = parse("a 10 aa\nb 20 b0\nd 30 dd\n").expect("well formed");

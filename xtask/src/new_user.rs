@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn programs_are_taken_as_they_are_printed() {
+    fn programs_are_extracted_as_printed() {
         let page = "Text.\n\n```rust\nlet x = 1;\n# let hidden = 2;\n#[derive(Debug)]\nstruct A;\n```\n\n\
                     ```sh\ncargo run\n```\n\n```rust\nfn main() {}\n```\n";
         let programs = blocks(page, "rust");

@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn new_gone_and_costlier_kernels_are_reported() {
+    fn added_removed_and_costlier_kernels_are_reported() {
         let committed = parse("# rustc\na 1000\nb 1000\nc 1000\nd 1000\n").expect("well formed");
         assert_eq!(differences(&committed, &committed), [""; 0]);
         let found = parse("# rustc\na 1019\nb 1030\nc 900\ne 1\n").expect("well formed");

@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn planted_circles_are_found() {
+    fn planted_cycles_are_found() {
         let circle = |a: &str, b: &str| {
             planted(&[("lib.rs", "mod a; mod b; pub use b::B;"), ("a.rs", a), ("b.rs", b)])
         };
@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn a_large_circle_and_a_crowd_are_findings() {
+    fn large_cycle_and_crowded_folder_are_findings() {
         let ring = |count: usize| {
             let of = |k: usize| {
                 (

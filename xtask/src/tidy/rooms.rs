@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn a_planted_arrow_back_up_is_found() {
+    fn planted_upward_dependency_is_found() {
         let up = "crates/sinew_math/src/hall/door.rs:1: `hall` must not name `attic`, which stands above it";
         for code in [
             "use crate::attic::Beam;",
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn arrows_down_and_of_tests_are_free() {
+    fn downward_and_test_dependencies_are_allowed() {
         for code in [
             "use crate::cellar::{Wine, attic};\nuse super::attic;",
             "#[cfg(test)]\nmod tests { use crate::attic; }",
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn an_exception_excuses_and_must_be_needed() {
+    fn exception_is_accepted_only_while_needed() {
         let path = "crates/sinew_math/src/hall/door.rs";
         assert_eq!(check_files(&[(path, "use crate::attic;")], &[(path, "attic")]), [""; 0]);
         assert_eq!(check_files(&[(path, "")], &[(path, "attic")]).len(), 1);

@@ -17,7 +17,7 @@ fn loaded(rig: &Rig, clips: &[Clip]) -> LoadedCharacter {
 }
 
 #[test]
-fn the_clips_of_a_file_are_recognised() {
+fn clips_of_a_file_are_recognised() {
     let Mannequin { rig, clips, motions } = mannequin();
     // Another order of the clips, as files may have it.
     let order = [motions.get_up_prone, motions.idle, motions.walk, motions.get_up_supine];
@@ -34,7 +34,7 @@ fn the_clips_of_a_file_are_recognised() {
 }
 
 #[test]
-fn what_a_file_lacks_is_built_in_and_said() {
+fn missing_motions_are_built_in_and_noted() {
     let hero = loaded(&mannequin().rig, &[]);
     let own = hero.def.motions();
     assert!(own.looped.is_some() && own.idle.is_some() && own.get_ups.len() == 2);
@@ -45,7 +45,7 @@ fn what_a_file_lacks_is_built_in_and_said() {
 }
 
 #[test]
-fn the_shortest_name_is_the_idle_and_a_held_pose_no_walk() {
+fn shortest_idle_name_wins_and_a_held_pose_is_not_a_walk() {
     let Mannequin { rig, clips, motions } = mannequin();
     let named = |clip: usize, name: &str| Clip { name: name.to_owned(), ..clips[clip].clone() };
     let mut held = named(motions.walk, "Walk_Pose");
@@ -61,7 +61,7 @@ fn the_shortest_name_is_the_idle_and_a_held_pose_no_walk() {
 }
 
 #[test]
-fn a_run_is_blended_with_the_walk() {
+fn run_is_blended_with_the_walk() {
     let Mannequin { rig, clips, motions } = mannequin();
     let run = sinew::mannequin::drills::running().clip;
     let named = |clip: &Clip, name: &str| Clip { name: name.to_owned(), ..clip.clone() };
@@ -83,7 +83,7 @@ fn a_run_is_blended_with_the_walk() {
 }
 
 #[test]
-fn a_file_without_a_skin_is_refused_by_name() {
+fn file_without_a_skin_is_rejected_by_name() {
     let rig = Rig { meshes: Vec::new(), ..mannequin().rig };
     let document = read(&rig, &[]);
     assert_eq!(document.container, Container::Glb);
@@ -94,7 +94,7 @@ fn a_file_without_a_skin_is_refused_by_name() {
 }
 
 #[test]
-fn the_settings_beside_a_file_are_followed() {
+fn settings_beside_a_file_are_applied() {
     let path = std::env::temp_dir().join(format!("sinew_loaded_{}.glb", std::process::id()));
     let own = mannequin();
     std::fs::write(&path, write_gltf(&own.rig, &own.clips).expect("it can be written")).expect("a file");
@@ -108,6 +108,6 @@ fn the_settings_beside_a_file_are_followed() {
 }
 
 #[test]
-fn the_example_walks_falls_and_gets_up() {
+fn example_character_walks_falls_and_gets_up() {
     your_character::run(your_character::mannequin());
 }

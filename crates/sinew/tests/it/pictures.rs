@@ -139,7 +139,7 @@ impl DebugDraw for Wires {
 }
 
 #[test]
-fn pictures_are_those_that_the_library_draws() {
+fn saved_pictures_match_drawn_ones() {
     let pictures = [("doc/fall.svg", fall()), ("../sinew_ragdoll/doc/ragdoll.svg", ragdoll())];
     for (path, due) in pictures {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(path);

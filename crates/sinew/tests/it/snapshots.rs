@@ -139,7 +139,7 @@ fn table(times: usize, counts: &[usize]) {
 }
 
 #[test]
-fn deltas_of_snapshots_bring_them_back() {
+fn deltas_restore_their_snapshots() {
     table(1, &[2]);
 }
 

@@ -511,7 +511,7 @@ mod tests {
             {"angularAxes": [1, 2], "max": 0.4}, {"angularAxes": [0], "min": -0.1, "max": 0.2}]}]}}}"#;
 
     #[test]
-    fn bodies_shapes_and_joints_of_omi_are_there() {
+    fn omi_bodies_shapes_and_joints_are_read() {
         let model = read_physics_gltf(ROPE.as_bytes()).expect("it is sound");
         assert_eq!(model.bodies.len(), 3);
         let bob = &model.bodies[2].def;
@@ -529,7 +529,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ragdoll_that_was_written_comes_back() {
+    fn written_ragdoll_reads_back_equal() {
         let def = sinew::mannequin::character();
         let bytes = write_gltf(&def.rig, &[]).expect("it can be written");
         let document = read_gltf(&bytes, ReadOptions::default(), &mut no_files).expect("and read");

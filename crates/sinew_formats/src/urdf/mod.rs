@@ -410,7 +410,7 @@ mod tests {
         <joint name="end" type="fixed"><parent link="upper"/><child link="tip"/><origin xyz="0.4 0 0"/></joint></robot>"#;
 
     #[test]
-    fn links_joints_limits_and_masses_are_those_of_the_file() {
+    fn links_joints_limits_and_masses_match_the_file() {
         let model = read_urdf(ARM.as_bytes()).expect("it is sound");
         let names: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
         assert_eq!(names, ["world", "base", "upper", "tip"]);

@@ -79,7 +79,7 @@ fn humanoid_bodies_match_mujoco() {
 /// Compares the full tensors of two bodies whose principal axes are not the frame's with MuJoCo 4.0.0.
 #[needs_data]
 #[test]
-fn inertia_is_turned_like_the_body() {
+fn inertia_is_rotated_with_the_body() {
     let model = humanoid();
     // Diagonal and (yz, xz, xy), in our axes.
     for (name, diagonal, off) in [
@@ -317,7 +317,7 @@ fn on_hinges(axes: &[Vec3], angles: &[f32], range: [f32; 2]) -> MjcfModel {
 }
 
 #[test]
-fn two_hinges_are_one_swing_and_one_twist_exactly() {
+fn two_hinges_become_one_swing_and_one_twist() {
     let mut random = Random::new(11);
     for _ in 0..200 {
         let turn = random.rotation();
@@ -334,7 +334,7 @@ fn two_hinges_are_one_swing_and_one_twist_exactly() {
 }
 
 #[test]
-fn three_hinges_keep_their_ranges_one_by_one() {
+fn three_hinges_keep_their_separate_ranges() {
     let mut random = Random::new(12);
     for case in 0..300 {
         let (turn, hand) = (random.rotation(), [1.0, -1.0][case % 2]);
@@ -379,7 +379,7 @@ fn ranges_follow_compiler_reference_and_joint() {
 }
 
 #[test]
-fn the_nearest_nested_class_applies() {
+fn nearest_nested_class_applies() {
     let model = read(
         "<mujoco><default><geom size='.1'/><default class='a'><geom size='.2' type='capsule'/>
             <default class='b'><geom size='.3 .5'/></default></default></default>
@@ -394,7 +394,7 @@ fn the_nearest_nested_class_applies() {
 }
 
 #[test]
-fn shapes_meet_where_either_is_affine_to_the_other() {
+fn shapes_collide_if_either_filter_accepts_the_other() {
     let model = read(
         "<mujoco><worldbody><geom type='plane' size='0 0 1'/><body><freejoint/>
             <geom size='.1' contype='1' conaffinity='0'/><geom size='.1' contype='0' conaffinity='2'/>
@@ -416,7 +416,7 @@ fn complaint(contents: &str) -> String {
 }
 
 #[test]
-fn complaints_name_the_place() {
+fn errors_name_the_place() {
     let body = |contents: &str| format!("<worldbody><body>\n  {contents}</body></worldbody>");
     for (contents, expected) in [
         ("<wordbody/>".into(), "no section `wordbody` (line 2 column 1)"),
@@ -465,7 +465,7 @@ fn complaints_name_the_place() {
 
 /// Deeply nested files do not cause deep recursion.
 #[test]
-fn deep_nesting_is_refused_and_no_overflow() {
+fn deep_nesting_is_rejected_without_stack_overflow() {
     let nested = |tag: &str, end: &str, count: usize| tag.repeat(count) + &end.repeat(count);
     let bodies = nested("<body><joint/><geom size='1'/>", "</body>", 100_000);
     assert!(complaint(&format!("<worldbody>{bodies}</worldbody>")).contains("more than 1024 bodies"));
@@ -477,7 +477,7 @@ fn deep_nesting_is_refused_and_no_overflow() {
 }
 
 #[test]
-fn oversized_models_are_refused() {
+fn oversized_models_are_rejected() {
     let attributes: String = (0..2000).map(|i| format!(" a{i}=''")).collect();
     assert_eq!(complaint(&format!("<size{attributes}/>")), "more than 1000 attributes (line 2)");
     assert_eq!(complaint("<size xmlns:a='b'/>"), "XML namespaces are not read (line 2)");
@@ -507,7 +507,7 @@ fn read_and_try(bytes: &[u8]) -> Result<(), Error> {
 
 #[needs_data]
 #[test]
-fn every_prefix_of_the_humanoid_is_refused() {
+fn every_prefix_of_the_humanoid_is_rejected() {
     let text = humanoid_text();
     let text = text.trim_end();
     let step = if std::env::var_os("SINEW_FULL").is_some() { 1 } else { 37 };
@@ -520,7 +520,7 @@ fn every_prefix_of_the_humanoid_is_refused() {
 /// set, otherwise a hundredth.
 #[needs_data]
 #[test]
-fn mutated_humanoids_do_no_harm() {
+fn mutated_humanoids_do_not_panic() {
     const WORDS: [&str; 10] = ["0", "-1", "1e9", "1e-30", "nan", "1e40", "", "\"", "<body>", "0 0 0 0"];
     let text = humanoid_text();
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 10_000 } else { 100 };
@@ -552,7 +552,7 @@ fn mutated_humanoids_do_no_harm() {
 }
 
 #[test]
-fn a_free_body_is_placed_and_its_parts_follow() {
+fn free_body_is_placed_with_its_children() {
     let model = read(
         "<mujoco><worldbody><body name='a' pos='0 0 1'><freejoint/><geom size='.1'/>
             <body name='b' pos='1 0 0'><geom size='.1'/></body></body></worldbody>

@@ -192,7 +192,7 @@ mod tests {
 
     /// Two boxes side by side at random poses hide their common side, but not the protruding part of the higher box.
     #[test]
-    fn an_abutting_shape_hides_only_the_common_side() {
+    fn abutting_shape_hides_only_the_common_side() {
         let mut random = Random::new(5);
         for case in 0..200 {
             let frame = Transform::new(random.in_cube() * 5.0, random.rotation());
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn deep_shapes_show_no_side_and_twins_show_all() {
+    fn deep_shapes_have_no_visible_side_and_coincident_ones_have_all() {
         let at = Transform::new(Vec3::ZERO, Rotation::from_axis_angle(Vec3::Z, 0.3));
         let edge = at.point(Vec3::new(0.5, 0.5, 0.0));
         let faces = || Faces::around(&cube(), &at, edge, 0.004).expect("it is there");

@@ -55,7 +55,7 @@ mod tests {
     use sinew_scenes::scenes::registry;
 
     #[test]
-    fn every_scene_is_noted_once() {
+    fn every_scene_has_one_note() {
         let mut tour = Tour::begun();
         let last = registry().last().expect("there are scenes").name;
         while let Some(scene) = tour.next() {

@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn bones_and_colliders_are_where_their_joint_is() {
+    fn bones_and_colliders_are_drawn_at_their_joint() {
         let keeps = Side::Outside;
         let (tip, offset) = (Vec3::new(0.0, 1.0, 1.0), Vec3::NEG_X);
         let lines = lines_of(ColliderShape::Sphere { offset, radius: 0.3, keeps });
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_particle_on_its_backstop_is_red() {
+    fn particle_on_its_backstop_is_red() {
         let mut world = World::new(WorldDef::default());
         let body = world.add_body(&BodyDef::fixed(Shape::Sphere { radius: 0.1 }).at(Vec3::Z));
         let at = |height: f32| ParticleDef {

@@ -60,7 +60,7 @@ fn saved(viewer: &mut Headless) -> RagdollDef {
 }
 
 #[test]
-fn keys_change_a_limit_which_is_saved() {
+fn limit_changed_by_keys_is_saved() {
     let Some(mut viewer) = bench("edited_by_keys") else { return };
     choose(&mut viewer, "leftUpperArm");
     let before = degrees(def(&viewer), "leftUpperArm");
@@ -142,7 +142,7 @@ fn dragging_a_handle_changes_a_limit() {
 
 /// Roles, shapes and masses: each change builds the rig anew.
 #[test]
-fn roles_shapes_and_masses() {
+fn edited_roles_shapes_and_masses_apply() {
     let path = folder("edited_all").join("mannequin.glb");
     std::fs::write(&path, mannequin_glb()).expect("the folder is there");
     let mut session = Session::start(Subject::file(&path).expect("it is there")).expect("it is a character");
@@ -188,7 +188,7 @@ fn roles_shapes_and_masses() {
 
 /// A ragdoll file has no rig: masses and limits change, shapes and roles are refused with a message.
 #[test]
-fn a_definition_without_a_rig() {
+fn definition_without_a_rig_rejects_changes_of_shape() {
     let mannequin = sinew::mannequin::character();
     let path = folder("edited_file").join("mannequin.sinew.json");
     std::fs::write(&path, write_ragdoll(&mannequin.ragdoll)).expect("the folder is there");

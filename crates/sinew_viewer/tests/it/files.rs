@@ -28,7 +28,7 @@ pub fn mannequin_glb() -> Vec<u8> {
 }
 
 #[test]
-fn a_character_that_is_dropped_falls() {
+fn dropped_character_falls() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let path = folder("dropped_character").join("mannequin.glb");
     std::fs::write(&path, mannequin_glb()).expect("the folder is there");
@@ -60,7 +60,7 @@ fn falls(viewer: &mut Headless, name: &str) {
 
 /// A dropped ragdoll without its rig: its bodies fall.
 #[test]
-fn a_ragdoll_that_is_dropped_falls() {
+fn dropped_ragdoll_falls() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let mannequin = sinew::mannequin::mannequin();
     let analysis = analyze(&mannequin.rig).expect("it has a skin");
@@ -76,7 +76,7 @@ fn a_ragdoll_that_is_dropped_falls() {
 
 /// Bytes with names, as a page passes them: a glTF finds the file beside it, and has the bits of the same file on a disk.
 #[test]
-fn dropped_bytes_load_as_files_do() {
+fn dropped_bytes_load_like_files() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let folder = folder("dropped_on_a_page");
     let glb = mannequin_glb();
@@ -132,7 +132,7 @@ fn unreadable_files_give_a_message_and_change_nothing() {
 
 /// A motion without a skin plays as bones.
 #[test]
-fn a_bvh_that_is_dropped_plays() {
+fn dropped_bvh_plays() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let mannequin = sinew::mannequin::mannequin();
     let walk = &mannequin.clips[0];
@@ -161,7 +161,7 @@ fn a_bvh_that_is_dropped_plays() {
 
 /// The saved file has the played motion as an additional clip with the same joint poses.
 #[test]
-fn the_played_motion_is_saved_as_glb() {
+fn played_motion_is_saved_as_glb() {
     let glb = mannequin_glb();
     let file = NamedFile { name: "mannequin.glb".into(), bytes: glb.clone() };
     let subject = Subject::dropped(vec![file]).expect("it is a character");

@@ -37,7 +37,7 @@ fn scenes_and_panels() {
 }
 
 #[test]
-fn the_search_opens_a_scene() {
+fn search_opens_a_scene() {
     let Some(mut viewer) = viewer("pendulum", SIZE) else { return };
     settled(&mut viewer);
     viewer.text("/");
@@ -52,7 +52,7 @@ fn the_search_opens_a_scene() {
 
 /// A drag pulls the body under the mouse, is recorded, and the recording replays to the same bits.
 #[test]
-fn a_drag_pulls_a_body_and_is_recorded() {
+fn drag_pulls_a_body_and_is_recorded() {
     let Some(mut viewer) = viewer("stack", SIZE) else { return };
     settled(&mut viewer);
     let world = viewer.app().session().world();
@@ -86,7 +86,7 @@ fn a_drag_pulls_a_body_and_is_recorded() {
 }
 
 #[test]
-fn a_ball_is_thrown_and_layers_are_drawn() {
+fn ball_is_thrown_and_layers_are_drawn() {
     let Some(mut viewer) = viewer("ragdoll_drop", SIZE) else { return };
     let plain = settled(&mut viewer);
     let bodies = viewer.app().session().world().body_ids().count();
@@ -107,7 +107,7 @@ fn a_ball_is_thrown_and_layers_are_drawn() {
 
 /// A file that cannot be shown gives a message, and the viewer continues.
 #[test]
-fn a_bad_file_gives_a_message() {
+fn invalid_file_gives_a_message() {
     let Some(mut viewer) = viewer("pendulum", SIZE) else { return };
     viewer.app_mut().open_file("nowhere.json".as_ref());
     assert_eq!(viewer.app().message(), Some("nowhere.json: no such file"));
@@ -118,7 +118,7 @@ fn a_bad_file_gives_a_message() {
 /// W makes the scene's character walk away from the camera, releasing W stops it, and the recording replays
 /// the same.
 #[test]
-fn keys_walk_a_character() {
+fn keys_move_a_walking_character() {
     let Some(mut viewer) = viewer("street", [640, 360]) else { return };
     settled(&mut viewer);
     let place = |viewer: &Headless| viewer.app().session().instance().steered().expect("somebody is led");
@@ -158,7 +158,7 @@ fn keys_walk_a_character() {
 
 /// The first scene opens with characters drawn with their skin, which stay in the picture.
 #[test]
-fn the_first_scene_stays_in_sight() {
+fn first_scene_stays_in_view() {
     let Some(gpu) = gpu() else { return };
     let options = Options { hides_times: true, steps: Some(300), ..Options::default() };
     let app = App::new(options).expect("it starts");

@@ -96,7 +96,7 @@ pub fn camera() -> Camera {
 }
 
 #[test]
-fn graphics_card_and_processor_draw_the_same_picture() {
+fn gpu_and_cpu_draw_the_same_picture() {
     let Some(gpu) = gpu() else { return };
     let sun = Sun { shadow_radius: 4.0, ..Sun::default() };
     let mut scene = Scene { sun, ..Scene::default() };
@@ -122,7 +122,7 @@ fn graphics_card_and_processor_draw_the_same_picture() {
 }
 
 #[test]
-fn a_skin_is_where_its_joints_are() {
+fn skin_is_drawn_at_its_joints() {
     let Some(gpu) = gpu() else { return };
     let subject = Subject::scene("two_tracks", &[]).expect("there is such a scene");
     let mut session = Session::start(subject).expect("it starts");

@@ -67,7 +67,7 @@ fn seeking_gives_the_same_bits() {
 }
 
 #[test]
-fn a_second_run_is_a_ghost() {
+fn second_run_is_drawn_as_a_ghost() {
     let (plain, struck) = (recorded("stack", 100, None), recorded("stack", 100, Some(30)));
     let mut session = Session::start(played(&plain)).expect("it is ours");
     session.set_ghost("struck.sinewrec", struck).expect("both recordings are of the same scene");
@@ -92,7 +92,7 @@ fn a_second_run_is_a_ghost() {
 
 /// A button puts the current run on a timeline; keys and the mouse seek in it.
 #[test]
-fn the_timeline_is_dragged() {
+fn dragging_the_timeline_seeks() {
     let Some(mut viewer) = viewer("stack", SIZE) else { return };
     let recording = recorded("stack", 100, Some(10));
     viewer.app_mut().open(played(&recording));

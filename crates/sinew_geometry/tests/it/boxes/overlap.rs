@@ -251,7 +251,7 @@ fn flat_boxes_overlap_exactly() {
 
 /// Moving both boxes changes neither the overlap test nor the depth.
 #[test]
-fn overlaps_move_with_the_boxes() {
+fn overlap_is_invariant_under_common_motion() {
     let mut random = Random::new(56);
     let mut compared = 0;
     for _ in 0..cases(100_000) {

@@ -8,7 +8,7 @@ use sinew_geometry::convex::{cast_shape, gap};
 use sinew_math::{Random, Transform, Vec3};
 
 #[test]
-fn casts_stop_where_the_gap_closes() {
+fn casts_stop_where_the_gap_becomes_zero() {
     let mut random = Random::new(21);
     for (ka, kb) in all_pairs() {
         let (mut hits, mut starts) = (0, 0);
@@ -54,7 +54,7 @@ fn casts_stop_where_the_gap_closes() {
 }
 
 #[test]
-fn a_falling_barrel_lands_on_its_rim() {
+fn tilted_cylinder_lands_on_its_rim() {
     let barrel = Shape::Cylinder { half_height: 0.5, radius: 0.3 };
     let lean = sinew_math::Rotation::from_axis_angle(Vec3::Z, 0.2);
     let start = Transform::new(Vec3::new(0.0, 2.0, 0.0), lean);
