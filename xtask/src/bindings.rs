@@ -211,7 +211,9 @@ mod tests {
 
     #[test]
     fn the_pages_have_programs() {
-        assert!(C_PAGES.iter().all(|page| !blocks(&read(page).expect("it is there"), "c").is_empty()));
+        assert!(
+            C_PAGES.iter().all(|page| !blocks(&read(page).expect("the file can be read"), "c").is_empty())
+        );
         assert!(printed(PYTHON_PAGES, "python").is_ok());
     }
 }

@@ -141,9 +141,9 @@ mod tests {
         let log = env::temp_dir().join(format!("sinew-search-{}.log", std::process::id()));
         assert_eq!(next_seed(&log).expect("no log is a beginning"), 0);
         fs::write(&log, "seeds 0..60, 60 lives\nseeds 60..1790, 1730 lives\n").expect("a file");
-        assert_eq!(next_seed(&log).expect("it has lines"), 1790);
+        assert_eq!(next_seed(&log).expect("the log has lines"), 1790);
         fs::write(&log, "nothing\n").expect("a file");
         assert!(next_seed(&log).is_err());
-        fs::remove_file(&log).expect("it is there");
+        fs::remove_file(&log).expect("the file can be removed");
     }
 }

@@ -9,7 +9,7 @@ fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
     let def = Arc::new(sinew::mannequin::character());
-    let body = |name: &str| def.body_named(name).expect("it has that body");
+    let body = |name: &str| def.body_named(name).expect("the character has this body");
     let mut puppet = Character::spawn(&mut world, &def, Transform::IDENTITY);
     puppet.go_limp(&mut world);
     // The mouse takes the hand at its position and pulls with at most `Grab::speed` and `Grab::max_force`.
@@ -35,7 +35,7 @@ fn main() {
     let mut hero =
         Character::spawn(&mut world, &def, Transform::from_translation(at + Vec3::new(-0.3, 0.0, 0.3)));
     let grab = Grab { reach: 1.5, ..Grab::HAND };
-    let grip = hero.grab(&mut world, "leftHand", hand, &grab).expect("it is in reach");
+    let grip = hero.grab(&mut world, "leftHand", hand, &grab).expect("the body is within reach");
     mouse.release(&mut world);
     hero.set_move(Vec3::ZERO);
     for step in 0..480 {

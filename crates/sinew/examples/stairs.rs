@@ -36,7 +36,7 @@ pub fn main() {
     let mut hero = Character::spawn(&mut world, &def, Transform::IDENTITY);
     hero.set_move(Vec3::Z * 1.1);
     hero.face(Vec3::Z);
-    let feet = ["leftFoot", "rightFoot"].map(|foot| def.body_named(foot).expect("it has feet"));
+    let feet = ["leftFoot", "rightFoot"].map(|foot| def.body_named(foot).expect("the body exists"));
     let (mut on_floor, mut highest) = (0.0_f32, 0.0_f32);
     for step in 0..600 {
         world.step();

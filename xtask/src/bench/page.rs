@@ -394,8 +394,9 @@ mod tests {
     /// The README gives the speeds of `docs/benchmarks.md`, which are by the mean step.
     #[test]
     fn readme_has_the_speeds_of_the_page() {
-        let read =
-            |name: &str| std::fs::read_to_string(crate::command::root().join(name)).expect("it is there");
+        let read = |name: &str| {
+            std::fs::read_to_string(crate::command::root().join(name)).expect("the file can be read")
+        };
         let (readme, page) = (read("README.md"), read("docs/benchmarks.md"));
         for &(scene, [before, after]) in CLAIMS {
             let row = page.lines().find(|line| line.starts_with(&format!("| {scene} "))).expect(scene);

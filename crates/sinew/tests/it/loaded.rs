@@ -8,8 +8,8 @@ use sinew::ragdoll::{AfterSettling, Locomotion, Settings};
 use sinew::{LoadedCharacter, character_of, load_character};
 
 fn read(rig: &Rig, clips: &[Clip]) -> Document {
-    let bytes = write_gltf(rig, clips).expect("it can be written");
-    read_gltf(&bytes, ReadOptions::default(), &mut no_files).expect("it can be read")
+    let bytes = write_gltf(rig, clips).expect("the rig can be written as glTF");
+    read_gltf(&bytes, ReadOptions::default(), &mut no_files).expect("the glTF can be read")
 }
 
 fn loaded(rig: &Rig, clips: &[Clip]) -> LoadedCharacter {
@@ -87,7 +87,7 @@ fn file_without_a_skin_is_rejected_by_name() {
     let rig = Rig { meshes: Vec::new(), ..mannequin().rig };
     let document = read(&rig, &[]);
     assert_eq!(document.container, Container::Glb);
-    let error = character_of(document, "crate.glb", &Settings::default()).expect_err("it has no skin");
+    let error = character_of(document, "crate.glb", &Settings::default()).expect_err("the file has no skin");
     assert!(error.to_string().starts_with("crate.glb: "), "{error}");
     let error = load_character("no/such.glb").expect_err("there is no such file");
     assert!(error.to_string().starts_with("no/such.glb: "), "{error}");
@@ -97,13 +97,14 @@ fn file_without_a_skin_is_rejected_by_name() {
 fn settings_beside_a_file_are_applied() {
     let path = std::env::temp_dir().join(format!("sinew_loaded_{}.glb", std::process::id()));
     let own = mannequin();
-    std::fs::write(&path, write_gltf(&own.rig, &own.clips).expect("it can be written")).expect("a file");
+    std::fs::write(&path, write_gltf(&own.rig, &own.clips).expect("the rig can be written as glTF"))
+        .expect("a file");
     let beside = sinew::formats::settings_path(&path);
     std::fs::write(&beside, r#"{"sinew": "ragdoll-settings", "version": 1, "mass": 55}"#)
-        .expect("it can be written");
+        .expect("the file can be written");
     let hero = load_character(&path).expect("a character");
-    std::fs::remove_file(&beside).expect("it is there");
-    std::fs::remove_file(&path).expect("it is there");
+    std::fs::remove_file(&beside).expect("the file can be removed");
+    std::fs::remove_file(&path).expect("the file can be removed");
     assert!((hero.def.ragdoll.total_mass - 55.0).abs() < 1e-3, "{} kg", hero.def.ragdoll.total_mass);
 }
 

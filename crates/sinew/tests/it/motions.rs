@@ -234,7 +234,7 @@ fn block(middle: Vec3, half: Vec3, slot: usize) -> Primitive {
 fn with_box(mut rig: Rig, role: Role, off: Vec3, half: Vec3) -> Rig {
     let analysis = analyze(&rig).expect("a skin");
     let joint = analysis.joint_with(role).expect("the role");
-    let slot = rig.skins[0].joints.iter().position(|&at| at == joint).expect("it moves skin");
+    let slot = rig.skins[0].joints.iter().position(|&at| at == joint).expect("the joint moves skin");
     let middle = analysis.bind_model[joint].translation + off;
     let part = block(middle, half, slot);
     let joint = rig.meshes[0].joint;
@@ -359,7 +359,7 @@ fn large_shapes_do_not_raise_a_get_up() {
         for frame in 0..fit.take.frames() {
             meter.stand(Stage::Rising, fit.take.pose(frame), &to_world, 0.0);
         }
-        let above = meter.figures().rising_above_m.expect("it was measured");
+        let above = meter.figures().rising_above_m.expect("the height was measured");
         assert!(above < 0.05 * def.ragdoll.height, "it is {above} m above the floor");
     }
 }

@@ -23,7 +23,7 @@ fn height_field_of_few_samples_carries_a_ball() {
         HeightFieldDef::from_fn(5, 3, 2.0, |column, row| if (column, row) == (2, 1) { 1.0 } else { 0.0 });
     assert_eq!((hill.heights.len(), hill.heights[5 + 2], hill.spacing), (15, 1.0, [2.0, 2.0]));
     assert_eq!(hill, HeightFieldDef::new(5, 3, 2.0, hill.heights.clone()));
-    let field = HeightField::new(hill).expect("it is one");
+    let field = HeightField::new(hill).expect("the samples are a valid height field");
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HeightField(field.into())));
     let ball = BodyDef::dynamic(Shape::Sphere { radius: 0.25 }).at(Vec3::new(1.0, 2.0, 1.0));

@@ -21,7 +21,7 @@ impl Run {
     /// Runs a prepared command.
     pub fn of(command: &mut Command) -> Self {
         let Output { status, stdout, stderr } = command.output().expect("the binary starts");
-        let text = |bytes| String::from_utf8(bytes).expect("it prints UTF-8");
+        let text = |bytes| String::from_utf8(bytes).expect("the output is UTF-8");
         Self { code: status.code(), stdout: text(stdout), stderr: text(stderr) }
     }
 

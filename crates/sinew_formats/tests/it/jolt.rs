@@ -196,7 +196,7 @@ fn small_ragdoll_matches_its_file() {
     let JointKind::Ball { limit: Some(limit) } = joint.kind else { panic!("{:?}", joint.kind) };
     assert_eq!((limit.swing_y.hi, limit.swing_z.hi), (0.25, 0.5));
     assert_eq!((limit.twist.lo, limit.twist.hi, joint.friction_torque), (-0.125, 0.375, 2.5));
-    let motor = motors[1].expect("it has a motor");
+    let motor = motors[1].expect("the joint has a motor");
     assert_eq!((motor.hertz, motor.damping_ratio, motor.max_torque), (20.0, 2.0, 500.0));
 }
 

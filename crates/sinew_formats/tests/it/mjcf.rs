@@ -16,7 +16,7 @@ fn humanoid_text() -> String {
 }
 
 fn humanoid() -> MjcfModel {
-    read_mjcf(humanoid_text().as_bytes()).expect("it is read")
+    read_mjcf(humanoid_text().as_bytes()).expect("the model can be read")
 }
 
 /// Converts from MuJoCo's axes to ours.
@@ -96,7 +96,7 @@ fn inertia_is_rotated_with_the_body() {
 
 fn joint<'a>(model: &'a MjcfModel, child: &str) -> &'a MjcfJoint {
     let child = model.body(child).expect("the body is there");
-    model.joints.iter().find(|joint| joint.child == child).expect("it has a joint")
+    model.joints.iter().find(|joint| joint.child == child).expect("the body has a joint to its parent")
 }
 
 #[needs_data]
@@ -558,7 +558,7 @@ fn free_body_is_placed_with_its_children() {
             <body name='b' pos='1 0 0'><geom size='.1'/></body></body></worldbody>
         <keyframe><key name='k' qpos='1 2 3 0 0 0 2'/></keyframe></mujoco>",
     );
-    let pose = model.pose(model.keyframe("k").expect("it is there"));
+    let pose = model.pose(model.keyframe("k").expect("the model has this keyframe"));
     assert_close(pose[1].translation, y_up([1.0, 2.0, 3.0]), 1e-6, "a");
     // The pose after half a turn about the file's z.
     assert_close(pose[2].translation, y_up([0.0, 2.0, 3.0]), 1e-6, "b");
@@ -594,7 +594,7 @@ fn springs_and_slides_match_the_file() {
 fn contact_properties_match_the_file() {
     let material = |attributes: &str| {
         let model = one_body("", "", &format!("<geom size='.1' {attributes}/>"));
-        model.bodies.iter().flat_map(|body| &body.def.shapes).next().expect("it has a geom").material
+        model.bodies.iter().flat_map(|body| &body.def.shapes).next().expect("the model has a geom").material
     };
     assert_eq!(material("").friction, 1.0);
     let rubber = material("friction='.8 .01 .002' condim='6' solref='.02 .2'");

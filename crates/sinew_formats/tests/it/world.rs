@@ -74,7 +74,7 @@ fn page_lists_every_key_and_kind() {
     let body = complaint(r#"{"sinew":"world","version":1,"bodies":[{"?":0}]}"#);
     let shape = complaint(r#"{"sinew":"world","version":1,"bodies":[{"shapes":[{"?":0}]}]}"#);
     for complaint in [body, shape] {
-        let known = complaint.split("known are ").nth(1).expect("it lists what is known");
+        let known = complaint.split("known are ").nth(1).expect("the error lists the known keys");
         for key in known.split(", ") {
             assert!(page.contains(&format!("`{key}`")), "{key} is not on the page");
         }

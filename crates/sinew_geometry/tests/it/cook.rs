@@ -109,7 +109,7 @@ fn rotated_box_becomes_one_equal_box() {
         let cooked = mesh.cook(150);
         assert_eq!(cooked.boxes.len(), 1);
         assert!(cooked.deviation.distance_max < 1e-3, "{cooked:?}");
-        let ratio = cooked.deviation.volume_ratio.expect("it is closed");
+        let ratio = cooked.deviation.volume_ratio.expect("the mesh is closed");
         assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
         assert_eq!(cooked.repairs.open_edges, 0);
     }

@@ -146,7 +146,7 @@ fn degenerate_rays_outside_a_shape_miss() {
             );
         }
         let inside = Ray { origin: Vec3::new(0.0, -0.1, 0.0), direction: Vec3::ZERO };
-        let hit = shape.cast_ray(&Transform::IDENTITY, &inside).expect("it starts inside");
+        let hit = shape.cast_ray(&Transform::IDENTITY, &inside).expect("a ray from inside hits");
         assert_eq!(hit.fraction, 0.0);
         assert!((hit.normal.length() - 1.0).abs() < 1e-6, "{shape:?}");
     }

@@ -149,7 +149,7 @@ mod tests {
         assert!((low + 2.2).abs() < 1e-5 && (high - 2.2).abs() < 1e-5, "{low} to {high}");
         // A plane with its normal.
         let lines = lines_of(ColliderShape::Plane { offset, normal: Vec3::Y });
-        let last = lines.last().expect("its normal");
+        let last = lines.last().expect("the normal is drawn");
         assert!((last.to - last.from).normalize().dot(Vec3::NEG_X) > 0.999, "{last:?}");
     }
 

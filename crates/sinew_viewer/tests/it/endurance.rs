@@ -38,7 +38,7 @@ fn every_scene_opens_and_closes() {
     let mut early = None;
     for round in 0..rounds {
         for scene in registry() {
-            let subject = Subject::scene(scene.name, &[]).expect("it is in the registry");
+            let subject = Subject::scene(scene.name, &[]).expect("the scene is in the registry");
             let start = Instant::now();
             viewer.app_mut().open(subject);
             viewer.frame().expect("the card draws");
@@ -76,7 +76,7 @@ fn every_scene_opens_and_closes() {
 fn a_frame_with_a_hundred_figures() {
     let Some(gpu) = gpu() else { return };
     let subject = Subject::scene("street", &["n=100".to_owned()]).expect("there is such a scene");
-    let mut session = Session::start(subject).expect("it starts");
+    let mut session = Session::start(subject).expect("the scene can be opened");
     for _ in 0..60 {
         session.step();
     }

@@ -10,7 +10,7 @@ const SIZE: [u32; 2] = [1280, 760];
 /// Returns a paused viewer of a scene with pictures of a size in pixels.
 pub fn viewer(scene: &str, size: [u32; 2]) -> Option<Headless> {
     let subject = Some(Subject::scene(scene, &[]).expect("there is such a scene"));
-    let app = App::new(Options { subject, paused: true, ..Options::default() }).expect("it starts");
+    let app = App::new(Options { subject, paused: true, ..Options::default() }).expect("the viewer starts");
     Some(Headless::new(app, gpu()?, size))
 }
 
@@ -58,7 +58,7 @@ fn drag_pulls_a_body_and_is_recorded() {
     let world = viewer.app().session().world();
     let body = world.body_ids().filter(|&id| world.mass(id).mass > 0.0).last().expect("something moves");
     let before = world.transform(body).translation;
-    let at = viewer.app().on_screen(before).expect("it is seen");
+    let at = viewer.app().on_screen(before).expect("the body is visible");
     viewer.move_to(at.x, at.y);
     viewer.frame().expect("the card draws");
     viewer.button(at.x, at.y, true);
@@ -76,7 +76,8 @@ fn drag_pulls_a_body_and_is_recorded() {
     assert!(moved > 0.1, "the character moved only {moved} m");
     let recording = session.recording().expect("a scene is recorded");
     assert!(recording.steps.iter().any(|step| !step.operations.is_empty()));
-    let mut replay = sinew_scenes::recording::Replay::start(recording.clone()).expect("it starts");
+    let mut replay =
+        sinew_scenes::recording::Replay::start(recording.clone()).expect("the recording can be replayed");
     let mut steps = 0;
     while let Some(step) = replay.step() {
         assert_eq!(step.found, step.recorded, "step {}", step.step);
@@ -148,8 +149,9 @@ fn keys_move_a_walking_character() {
     }
     assert!((place(&viewer) - stands).length() < 0.02, "it stands");
     let recording = viewer.app().session().recording().expect("a scene is recorded").to_bytes();
-    let recording = sinew_scenes::recording::Recording::read(&recording).expect("it can be read again");
-    let mut replay = sinew_scenes::recording::Replay::start(recording).expect("it starts");
+    let recording = sinew_scenes::recording::Recording::read(&recording).expect("the recording can be read");
+    let mut replay =
+        sinew_scenes::recording::Replay::start(recording).expect("the recording can be replayed");
     while let Some(step) = replay.step() {
         assert_eq!(step.found, step.recorded, "step {}", step.step);
     }
@@ -161,7 +163,7 @@ fn keys_move_a_walking_character() {
 fn first_scene_stays_in_view() {
     let Some(gpu) = gpu() else { return };
     let options = Options { hides_times: true, steps: Some(300), ..Options::default() };
-    let app = App::new(options).expect("it starts");
+    let app = App::new(options).expect("the viewer starts");
     assert!(!app.session().instance().figures().is_empty());
     let mut viewer = Headless::new(app, gpu, SIZE);
     settled(&mut viewer);
@@ -183,7 +185,8 @@ fn first_scene_stays_in_view() {
 #[test]
 fn operations_are_undone() {
     let subject = Some(Subject::scene("stack", &[]).expect("there is such a scene"));
-    let mut app = App::new(Options { subject, paused: true, ..Options::default() }).expect("it starts");
+    let mut app =
+        App::new(Options { subject, paused: true, ..Options::default() }).expect("the viewer starts");
     (0..10).for_each(|_| app.step());
     let before = app.session().world().hash();
     let mut session_bodies = app.session().world().body_ids().count();
@@ -200,7 +203,8 @@ fn operations_are_undone() {
     // The recording is that of the run as it is now.
     let recording = app.session().recording().expect("a scene is recorded").clone();
     assert_eq!(recording.steps.len(), 40);
-    let mut replay = sinew_scenes::recording::Replay::start(recording).expect("it starts");
+    let mut replay =
+        sinew_scenes::recording::Replay::start(recording).expect("the recording can be replayed");
     while let Some(step) = replay.step() {
         assert_eq!(step.found, step.recorded, "step {}", step.step);
     }
