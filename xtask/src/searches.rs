@@ -17,10 +17,10 @@ const CHUNK: f64 = 5.0;
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask lives --of characters --minutes 60")]
 pub struct Lives {
-    /// Kind of lives
+    /// Kind of call sequences
     #[arg(long, value_enum, default_value_t = Of::Worlds)]
     of: Of,
-    /// Seed to begin at; by default where the last run ended
+    /// First seed; by default the one after the last run
     #[arg(long, value_name = "SEED")]
     from: Option<u64>,
     /// Duration, minutes
@@ -111,7 +111,7 @@ fn next_seed(log: &Path) -> Result<u64> {
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask soak --hours 0.5 --part brawl")]
 pub struct Soak {
-    /// Hours of game, shared among the parts
+    /// Hours of simulated time, shared among the parts
     #[arg(long, value_name = "H", default_value_t = 1.0)]
     hours: f64,
     /// Only this part; repeatable

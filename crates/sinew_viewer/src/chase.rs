@@ -8,7 +8,7 @@ const LAG: f32 = 0.3;
 /// the picture, and after a jump the camera arrives without a lag.
 const REACH: f32 = 0.16;
 
-/// Point that glides after a subject, metres, world space.
+/// Point that follows a subject with a smooth lag, metres, world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chase(Vec3);
 

@@ -125,7 +125,7 @@ fn of<'a>(counts: &'a Counts, kernel: &str) -> Option<&'a Count> {
     counts.kernels.iter().find(|count| count.kernel == kernel)
 }
 
-/// Prints a table for people.
+/// Prints a readable table.
 fn print(found: &Counts, committed: Option<&Counts>) {
     println!("{:<32} {:>14} {:>9} {:>9}", "kernel", "instructions", "about µs", "change");
     for Count { kernel, instructions } in &found.kernels {

@@ -1,4 +1,4 @@
-//! Times of the stages of a scene's step, and counts of their work, for people.
+//! Prints the times of the stages of a scene's step, and counts of their work.
 
 use super::figures::rounded;
 use super::peers;

@@ -17,7 +17,7 @@ pub struct Take {
 }
 
 impl Take {
-    /// Largest number of frames of a take (hours): bounds the memory that a file can request.
+    /// Largest number of frames of a take, hours of motion. It bounds the memory that a file can request.
     pub const MOST_FRAMES: usize = 1 << 20;
 
     /// Samples a clip every `frame_time` seconds, from its start to its end. The last frame is the one nearest to the

@@ -60,7 +60,7 @@ pub struct PlacedFeet {
 /// is kept: on ground with edges, smooth the heights that `ground` returns.
 ///
 /// # Panics
-/// If the slices are not as long as the rig has joints, or a joint is not in it.
+/// If a slice does not have one entry per joint of the rig, or a joint is not in the rig.
 pub fn place_feet(
     rig: &Rig,
     pelvis: JointIdx,
@@ -97,7 +97,7 @@ pub fn place_feet(
 /// joint; both are updated.
 ///
 /// # Panics
-/// If the slices are not as long as the rig has joints, or a joint is not in it.
+/// If a slice does not have one entry per joint of the rig, or a joint is not in the rig.
 pub fn hold_feet(
     rig: &Rig,
     pelvis: JointIdx,

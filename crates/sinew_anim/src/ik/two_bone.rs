@@ -161,7 +161,7 @@ fn planes(root: Vec3, middle: Vec3, end: Vec3, along: Vec3, pole: Pole) -> (Vec3
 /// weight.
 ///
 /// # Panics
-/// If the slices are not as long as the rig has joints, or a joint is not in it.
+/// If a slice does not have one entry per joint of the rig, or a joint is not in the rig.
 pub fn two_bone_ik(
     rig: &Rig,
     limb: TwoBone,

@@ -33,7 +33,7 @@ pub fn rest_pose(rig: &Rig) -> Vec<LocalTransform> {
 /// and filled, one entry per joint.
 ///
 /// # Panics
-/// If `local` is not as long as the rig has joints.
+/// If `local` does not have one entry per joint of the rig.
 pub fn local_to_model(rig: &Rig, local: &[LocalTransform], root: &Affine, model: &mut Vec<Affine>) {
     assert_eq!(local.len(), rig.joints.len(), "a pose has one local transform per joint");
     model.clear();

@@ -37,7 +37,8 @@ fn holds(shape: &Shape, p: Vec3) -> bool {
             (p.x * p.x + p.z * p.z + beyond * beyond).sqrt() <= radius
         }
         Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
-            // True in one of the balls between the two ends: ρ² + (y − c)² ≤ r², with c and r linear along the axis.
+            // True if the point is in one of the balls between the two ends: ρ² + (y − c)² ≤ r², with c and r linear
+            // along the axis.
             let (rho, y) = (f64::from(p.x).hypot(f64::from(p.z)), f64::from(p.y));
             let beyond = |t: f64| {
                 let center = f64::from(half_height) * (2.0 * t - 1.0);

@@ -1,4 +1,4 @@
-//! A run through all scenes to their ends, which notes whether each meets its expectations.
+//! A run of all scenes to their ends, which records whether each meets its expectations.
 
 use sinew_scenes::scenes::{Scene, registry};
 
@@ -31,7 +31,7 @@ impl Tour {
         registry().get(self.results.len())
     }
 
-    /// Notes the result of the scene that has ended.
+    /// Records the result of the scene that has ended.
     pub fn note(&mut self, is_met: bool) {
         if let Some(scene) = self.next() {
             self.results.push((scene.name, is_met));

@@ -200,7 +200,7 @@ fn operations_are_undone() {
     assert_eq!((app.session().world().hash(), app.message()), (after, Some("done again")));
     session_bodies += 1;
     assert_eq!(app.session().world().body_ids().count(), session_bodies);
-    // The recording is that of the run as it is now.
+    // The recording matches the run after undo and redo.
     let recording = app.session().recording().expect("a scene is recorded").clone();
     assert_eq!(recording.steps.len(), 40);
     let mut replay =
