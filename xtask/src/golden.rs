@@ -128,7 +128,7 @@ fn observe(known: &[GoldenHash], variants: &[Variant]) -> Result<Vec<GoldenHash>
         Profile::Debug => debug.clone(),
         Profile::Release => release.clone(),
     };
-    let any = binary(variants[0].0).context("no build to ask")?;
+    let any = binary(variants[0].0).context("no build to run")?;
     let mut observed = Vec::new();
     for scene in scenes(&any)? {
         let steps =

@@ -62,7 +62,7 @@ pub fn main() {
         hero.update(&mut world);
         told.extend_from_slice(hero.events());
         let hem = world.particles(cape).positions()[45] - world.transform(chest).translation;
-        assert!(hem.length() < 0.9, "it hangs on: {hem}");
+        assert!(hem.length() < 0.9, "the cape stays attached: {hem}");
         if frame == 239 {
             let turned = world.transform(leaf).rotation.to_scaled_axis().length().to_degrees();
             let at = hero.world_from_character().translation.z;

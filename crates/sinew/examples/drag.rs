@@ -29,7 +29,7 @@ fn main() {
         1e3 * away,
         world.reaction(mouse.joint()).force.length()
     );
-    assert!(away < 0.1 && puppet.state() == State::Limp, "who is held does not get up");
+    assert!(away < 0.1 && puppet.state() == State::Limp, "a held character does not get up");
     // Another character takes the hand and walks away with it.
     let at = world.center_of_mass(hand) * Vec3::new(1.0, 0.0, 1.0);
     let mut hero =

@@ -41,5 +41,5 @@ pub fn main() {
     world.load(&mut Reader::new(bytes.as_bytes())).expect("the saved state can be loaded");
     world.apply_impulse_at_center(dice[0], Vec3::X * 0.5);
     (0..120).for_each(|_| world.step());
-    assert_ne!(world.transform(dice[0]), rolled[0], "pushed, it goes another way");
+    assert_ne!(world.transform(dice[0]), rolled[0], "a pushed die moves differently");
 }

@@ -55,6 +55,6 @@ pub fn main() {
     println!(
         "at {end}; its lower foot was at most {highest:.2} m over the ground, on the floor {on_floor:.2}"
     );
-    assert!(end.z > 8.0 && hero.state() == State::Animated, "it goes up and down: {end}");
+    assert!(end.z > 8.0 && hero.state() == State::Animated, "the walker arrives: {end}");
     assert!(highest < on_floor + 0.12, "one foot is always down: {highest}");
 }

@@ -31,7 +31,7 @@ fn height_field_of_few_samples_carries_a_ball() {
     for _ in 0..120 {
         world.step();
     }
-    assert!(world.transform(ball).translation.y > 0.2, "it lies on the field");
+    assert!(world.transform(ball).translation.y > 0.2, "the ball lies on the field");
 }
 
 /// Checks that the prelude alone has every name used here.

@@ -7,7 +7,7 @@ use sinew::anim::{Wrap, rest_pose, sample};
 use sinew::formats::{MotionFile, MotionOptions, ReadOptions, load_gltf, load_motion};
 
 fn load(path: &str) -> MotionFile {
-    load_motion(path, &MotionOptions::default()).expect("what was written can be read")
+    load_motion(path, &MotionOptions::default()).expect("the written file can be read")
 }
 
 /// Largest difference between poses of joints with equal names, radians and metres, at key times of the first file.
