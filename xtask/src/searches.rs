@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn a_search_continues_where_it_ended() {
         let log = env::temp_dir().join(format!("sinew-search-{}.log", std::process::id()));
-        assert_eq!(next_seed(&log).expect("no log is a beginning"), 0);
+        assert_eq!(next_seed(&log).expect("a missing log gives the first seed"), 0);
         fs::write(&log, "seeds 0..60, 60 lives\nseeds 60..1790, 1730 lives\n").expect("a file");
         assert_eq!(next_seed(&log).expect("the log has lines"), 1790);
         fs::write(&log, "nothing\n").expect("a file");

@@ -387,7 +387,7 @@ fn write_joint(def: &RagdollDef, joint: &RagdollJointDef) -> Value {
         JointKind::Universal { .. } => "universal",
         JointKind::Hinge { .. } => "hinge",
         JointKind::Fixed => "fixed",
-        kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
+        kind => unreachable!("{kind:?}: joints of a ragdoll only rotate"),
     };
     let mut object = Map::new();
     object.insert("parent".into(), write_reference(def, joint.parent));

@@ -103,7 +103,7 @@ fn compiler() -> Result<String> {
 fn text(counts: &Counts) -> String {
     let mut text = format!("# {}\n", counts.compiler);
     for Count { kernel, instructions } in &counts.kernels {
-        writeln!(text, "{kernel} {instructions}").expect("a string takes everything");
+        writeln!(text, "{kernel} {instructions}").expect("writing to a string cannot fail");
     }
     text
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 #[test]
 fn header_is_up_to_date() {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let config = cbindgen::Config::from_file(here.join("cbindgen.toml")).expect("cbindgen.toml is one");
+    let config = cbindgen::Config::from_file(here.join("cbindgen.toml")).expect("cbindgen.toml is a valid configuration");
     let made = cbindgen::Builder::new().with_crate(here).with_config(config).generate().expect("the header can be generated");
     let mut text = Vec::new();
     made.write(&mut text);

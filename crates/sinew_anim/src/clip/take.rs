@@ -89,7 +89,7 @@ impl Take {
     /// # Panics
     /// If the take does not fit the rig.
     pub fn to_clip(&self, rig: &Rig, name: &str) -> Clip {
-        assert_eq!(self.joints, rig.joints.len(), "a take of this rig");
+        assert_eq!(self.joints, rig.joints.len(), "the take must fit the rig");
         let times: Vec<f32> = (0..self.frames()).map(|frame| self.time(frame)).collect();
         let mut channels = Vec::new();
         for (joint, rest) in rig.joints.iter().map(|joint| joint.rest).enumerate() {

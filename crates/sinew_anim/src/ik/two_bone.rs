@@ -169,7 +169,11 @@ pub fn two_bone_ik(
     local: &mut [LocalTransform],
     model: &mut [Affine],
 ) -> TwoBoneSolution {
-    assert_eq!((local.len(), model.len()), (rig.joints.len(), rig.joints.len()), "two poses of one rig");
+    assert_eq!(
+        (local.len(), model.len()),
+        (rig.joints.len(), rig.joints.len()),
+        "the poses must be of one rig"
+    );
     let place = |joint: JointIdx| model[joint].translation;
     let solution = solve_two_bone(place(limb.upper), place(limb.lower), place(limb.end), goal);
     let weight = clamp(goal.weight, 0.0, 1.0);

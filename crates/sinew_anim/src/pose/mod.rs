@@ -59,7 +59,7 @@ pub struct JointVelocity {
 /// # Panics
 /// If the poses differ in length.
 pub fn joint_velocities(before: &[Affine], after: &[Affine], dt: f32, out: &mut Vec<JointVelocity>) {
-    assert_eq!(before.len(), after.len(), "two poses of one rig");
+    assert_eq!(before.len(), after.len(), "the poses must be of one rig");
     out.clear();
     out.extend(before.iter().zip(after).map(|(a, b)| {
         if dt.is_nan() || dt <= 0.0 {

@@ -73,7 +73,7 @@ fn alternately_swinging_chains_are_the_legs() {
     let still = analyze(&rig).expect("a skin");
     assert!(still.humanoid && tails.contains(&thigh(&still)), "{}", thigh(&still));
     let mut walks = walk(1.1, 1.0);
-    // The tails swing, too, but together.
+    // The tails swing as well, but in phase with each other.
     walks.channels.extend(tails.iter().map(|&tail| turns(tail, 1.1, |t| 0.3 * trig::sin(2.0 * t))));
     // Chains of which only one swings, or both swing together, are no legs.
     let kick = Clip { duration: 1.0, channels: vec![turns(tails[0], 1.0, trig::sin)], ..Clip::default() };

@@ -212,7 +212,7 @@ fn footsteps_of_the_mannequin() {
 fn every_captured_file_becomes_a_glb() {
     let data = shared_data();
     let folder = Folder::new("convert-mocap");
-    for entry in std::fs::read_dir(data.join("mocap")).expect("the folder is there") {
+    for entry in std::fs::read_dir(data.join("mocap")).expect("the folder exists") {
         let path = entry.expect("an entry").path().display().to_string();
         let out = folder.path("out.glb");
         let run = sinew(&["convert", &path, &out]);

@@ -24,7 +24,7 @@ fn recording_verifies_and_diff_finds_the_step() {
     assert!(differs.refusal(1).contains("another scene or other settings"), "{differs:?}");
     assert!(sinew(&["replay", &mine, "--diff", &mine]).stdout.contains("50 steps, all equal"));
 
-    // Recorded by another version, and with another hash at the last step.
+    // The recording is of another version, and has another hash at the last step.
     let mut recording =
         Recording::read(&std::fs::read(&mine).expect("the file can be read")).expect("a recording");
     recording.made_by = "9.1.0".to_owned();

@@ -88,7 +88,7 @@ impl Folder {
 
     /// Returns the sorted names of the folder's entries.
     pub fn names(&self) -> Vec<String> {
-        let entries = fs::read_dir(&self.path).expect("the folder is there");
+        let entries = fs::read_dir(&self.path).expect("the folder exists");
         let name = |entry: std::io::Result<fs::DirEntry>| {
             entry.expect("an entry").file_name().to_string_lossy().into_owned()
         };

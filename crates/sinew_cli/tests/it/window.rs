@@ -129,7 +129,7 @@ fn window_opens_and_the_mouse_pulls_a_body() {
         display.xdotool(&["key", "F12"]);
         let line = viewer.wait_for("wrote");
         let name = line.strip_prefix("wrote ").expect("the name follows").to_owned();
-        let bytes = std::fs::read(folder.path(&name)).expect("the picture is there");
+        let bytes = std::fs::read(folder.path(&name)).expect("the picture exists");
         assert!(bytes.starts_with(b"\x89PNG"));
         (name, bytes)
     };

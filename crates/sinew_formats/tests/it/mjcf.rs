@@ -432,7 +432,10 @@ fn errors_name_the_place() {
         (body("<joint axis='0 0 0'/>"), "`axis`: the vector has no direction (line 3 column 10)"),
         (body("<joint type='slid'/>"), "no joint of type `slid` (line 3 column 3)"),
         (body("<joint range='2 1'/>"), "`range`: the lower end is above the upper one (line 3 column 10)"),
-        (body("<joint/>"), "mass and inertia of a moving body must be positive and finite (line 2 column 12)"),
+        (
+            body("<joint/>"),
+            "mass and inertia of a moving body must be positive and finite (line 2 column 12)",
+        ),
         (
             body("<joint/><joint axis='1 0 1'/><geom size='1'/>"),
             "hinges of one body must be at right angles to each other (line 2 column 12)",

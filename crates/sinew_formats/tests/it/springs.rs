@@ -158,7 +158,7 @@ fn excessive_collider_groups_are_rejected() {
     let error = read(&format!(
         r#"{{"VRMC_springBone":{{"colliders":[{colliders}],"colliderGroups":[{group}],"springs":[{many}]}}}}"#
     ))
-    .expect_err("1.9 GB of references");
+    .expect_err("1.9 GB of references are rejected");
     assert!(error.what.contains("more than the size of the file"), "{error}");
 }
 

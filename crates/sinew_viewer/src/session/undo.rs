@@ -74,7 +74,7 @@ impl Undo {
                 if !recorder.go_to(&mark) {
                     return Err("this scene cannot return to an earlier state".to_owned());
                 }
-                // It has no state of that moment.
+                // The second run has no saved state of that time, so it is dropped.
                 session.twin = None;
                 session.begin_trails();
                 let steps = session.world().step_count() as usize;

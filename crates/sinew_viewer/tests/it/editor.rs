@@ -17,7 +17,7 @@ const SIZE: [u32; 2] = [1280, 760];
 pub fn bench(name: &str) -> Option<Headless> {
     let mut viewer = viewer("pendulum", SIZE)?;
     let path = folder(name).join("mannequin.glb");
-    std::fs::write(&path, mannequin_glb()).expect("the folder is there");
+    std::fs::write(&path, mannequin_glb()).expect("the folder exists");
     viewer.app_mut().open_file(&path);
     settled(&mut viewer);
     Some(viewer)
@@ -151,7 +151,7 @@ fn dragging_a_handle_changes_a_limit() {
 #[test]
 fn edited_roles_shapes_and_masses_apply() {
     let path = folder("edited_all").join("mannequin.glb");
-    std::fs::write(&path, mannequin_glb()).expect("the folder is there");
+    std::fs::write(&path, mannequin_glb()).expect("the folder exists");
     let mut session = Session::start(Subject::file(&path).expect("the file can be read"))
         .expect("the character can be opened");
     let def = |session: &Session| session.workbench().expect("a ragdoll").def().clone();
@@ -199,7 +199,7 @@ fn edited_roles_shapes_and_masses_apply() {
 fn definition_without_a_rig_rejects_changes_of_shape() {
     let mannequin = sinew::mannequin::character();
     let path = folder("edited_file").join("mannequin.sinew.json");
-    std::fs::write(&path, write_ragdoll(&mannequin.ragdoll)).expect("the folder is there");
+    std::fs::write(&path, write_ragdoll(&mannequin.ragdoll)).expect("the folder exists");
     let mut session = Session::start(Subject::file(&path).expect("the file can be read"))
         .expect("the ragdoll can be opened");
     let arm = place(&mannequin.ragdoll, "leftLowerArm");

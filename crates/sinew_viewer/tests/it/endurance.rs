@@ -75,7 +75,7 @@ fn every_scene_opens_and_closes() {
 #[ignore = "a measurement, which asserts no time: `cargo xtask ci --full`"]
 fn a_frame_with_a_hundred_figures() {
     let Some(gpu) = gpu() else { return };
-    let subject = Subject::scene("street", &["n=100".to_owned()]).expect("there is such a scene");
+    let subject = Subject::scene("street", &["n=100".to_owned()]).expect("the scene exists");
     let mut session = Session::start(subject).expect("the scene can be opened");
     for _ in 0..60 {
         session.step();

@@ -17,7 +17,7 @@ pub fn folder(name: &str) -> PathBuf {
     if folder.exists() {
         std::fs::remove_dir_all(&folder).expect("the folder can be removed");
     }
-    std::fs::create_dir_all(&folder).expect("the target folder is there");
+    std::fs::create_dir_all(&folder).expect("the target folder exists");
     folder
 }
 
@@ -31,7 +31,7 @@ pub fn mannequin_glb() -> Vec<u8> {
 fn dropped_character_falls() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let path = folder("dropped_character").join("mannequin.glb");
-    std::fs::write(&path, mannequin_glb()).expect("the folder is there");
+    std::fs::write(&path, mannequin_glb()).expect("the folder exists");
     viewer.app_mut().open_file(&path);
     let session = viewer.app().session();
     assert_eq!(session.subject().title(), "mannequin.glb");
@@ -66,7 +66,7 @@ fn dropped_ragdoll_falls() {
     let analysis = analyze(&mannequin.rig).expect("the rig has a skin");
     let (def, _) = build(&mannequin.rig, &analysis, &BuildOptions::default()).expect("and bones");
     let path = folder("dropped_ragdoll").join("mannequin.sinew.json");
-    std::fs::write(&path, write_ragdoll(&def)).expect("the folder is there");
+    std::fs::write(&path, write_ragdoll(&def)).expect("the folder exists");
     viewer.app_mut().open_file(&path);
     let session = viewer.app().session();
     assert_eq!(session.subject().title(), "mannequin.sinew.json");
@@ -84,8 +84,8 @@ fn dropped_bytes_load_like_files() {
     let mut json: serde_json::Value = serde_json::from_slice(json).expect("the chunk is JSON");
     json["buffers"][0]["uri"] = "mannequin.bin".into();
     let json = json.to_string().into_bytes();
-    std::fs::write(folder.join("mannequin.gltf"), &json).expect("the folder is there");
-    std::fs::write(folder.join("mannequin.bin"), binary).expect("the folder is there");
+    std::fs::write(folder.join("mannequin.gltf"), &json).expect("the folder exists");
+    std::fs::write(folder.join("mannequin.bin"), binary).expect("the folder exists");
     viewer.app_mut().open_file(&folder.join("mannequin.gltf"));
     falls(&mut viewer, "with_a_folder");
     let hash = viewer.app().session().world().hash();
@@ -121,7 +121,7 @@ fn unreadable_files_give_a_message_and_change_nothing() {
     ];
     for (name, bytes) in nonsense {
         let path = folder.join(name);
-        std::fs::write(&path, bytes).expect("the folder is there");
+        std::fs::write(&path, bytes).expect("the folder exists");
         viewer.app_mut().open_file(&path);
         let line = viewer.app().message().expect("a line").to_owned();
         println!("{line}");

@@ -9,7 +9,7 @@ const SIZE: [u32; 2] = [1280, 760];
 
 /// Returns a paused viewer of a scene with pictures of a size in pixels.
 pub fn viewer(scene: &str, size: [u32; 2]) -> Option<Headless> {
-    let subject = Some(Subject::scene(scene, &[]).expect("there is such a scene"));
+    let subject = Some(Subject::scene(scene, &[]).expect("the scene exists"));
     let app = App::new(Options { subject, paused: true, ..Options::default() }).expect("the viewer starts");
     Some(Headless::new(app, gpu()?, size))
 }
@@ -184,7 +184,7 @@ fn first_scene_stays_in_view() {
 /// A thrown ball is undone and done again; edits of gravity too.
 #[test]
 fn operations_are_undone() {
-    let subject = Some(Subject::scene("stack", &[]).expect("there is such a scene"));
+    let subject = Some(Subject::scene("stack", &[]).expect("the scene exists"));
     let mut app =
         App::new(Options { subject, paused: true, ..Options::default() }).expect("the viewer starts");
     (0..10).for_each(|_| app.step());

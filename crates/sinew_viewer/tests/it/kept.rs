@@ -112,7 +112,7 @@ fn check(name: &str, picture: &Image, changed: &Image) {
     );
     if !is_alike(found) {
         let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
-        std::fs::write(&place, png(&picture)).expect("the target folder is there");
+        std::fs::write(&place, png(&picture)).expect("the target folder exists");
         panic!("{} differs from the stored picture: {found:?}; SINEW_BLESS=1 replaces it", place.display());
     }
     assert!(!is_alike(other), "{name}: the comparison misses a change: {other:?}");
@@ -128,7 +128,7 @@ fn open(subject: Option<Subject>) -> Option<Headless> {
 
 fn scene(name: &str, settings: &[&str], steps: u32) -> Option<Headless> {
     let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
-    let mut viewer = open(Some(Subject::scene(name, &settings).expect("there is such a scene")))?;
+    let mut viewer = open(Some(Subject::scene(name, &settings).expect("the scene exists")))?;
     step(&mut viewer, steps);
     Some(viewer)
 }

@@ -39,7 +39,7 @@ pub fn look(name: &str, image: &Image) {
         let bytes = encode::encode(PictureFormat::Png, std::slice::from_ref(image), 1)
             .expect("the picture can be encoded");
         std::fs::write(std::path::Path::new(&folder).join(format!("{name}.png")), bytes)
-            .expect("the folder is there");
+            .expect("the folder exists");
     }
 }
 
@@ -124,7 +124,7 @@ fn gpu_and_cpu_draw_the_same_picture() {
 #[test]
 fn skin_is_drawn_at_its_joints() {
     let Some(gpu) = gpu() else { return };
-    let subject = Subject::scene("two_tracks", &[]).expect("there is such a scene");
+    let subject = Subject::scene("two_tracks", &[]).expect("the scene exists");
     let mut session = Session::start(subject).expect("the scene can be opened");
     for _ in 0..40 {
         session.step();

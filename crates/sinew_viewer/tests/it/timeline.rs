@@ -12,7 +12,7 @@ const SIZE: [u32; 2] = [1280, 760];
 
 /// Returns a recording of a scene; a body is struck before a step, if one is given.
 pub fn recorded(scene: &str, steps: u64, strike: Option<u64>) -> Recording {
-    let mut recorder = Recorder::start(scene, &[]).expect("there is such a scene");
+    let mut recorder = Recorder::start(scene, &[]).expect("the scene exists");
     for step in 0..steps {
         if strike == Some(step) {
             let world = recorder.instance().world();
