@@ -158,7 +158,10 @@ fn grouped(number: u64) -> String {
 /// Returns one line per kernel that is new, removed or has a different count.
 fn differences(committed: &Counts, found: &Counts) -> Vec<String> {
     if committed.compiler != found.compiler {
-        return vec![format!("{PATH} was counted by {}, this compiler is {}", committed.compiler, found.compiler)];
+        return vec![format!(
+            "{PATH} was counted by {}, this compiler is {}",
+            committed.compiler, found.compiler
+        )];
     }
     let mut lines = Vec::new();
     for count in &found.kernels {
@@ -212,7 +215,9 @@ mod tests {
         let found = parse("# rustc 1.96.0 x86_64\na 2000\n").expect("well formed");
         assert_eq!(
             differences(&committed, &found),
-            ["bench/counts/baseline.txt was counted by rustc 1.95.0 x86_64, this compiler is rustc 1.96.0 x86_64"]
+            [
+                "bench/counts/baseline.txt was counted by rustc 1.95.0 x86_64, this compiler is rustc 1.96.0 x86_64"
+            ]
         );
     }
 

@@ -36,12 +36,12 @@ impl Undo {
         !continues && !is_part
     }
 
-    /// Remembers the state before an operation.
+    /// Stores the state before an operation.
     pub fn changed(&mut self, before: RecorderMark) {
         self.push(Change::Moment(Box::new(before)));
     }
 
-    /// Remembers the edits of a body before a new one.
+    /// Stores the edits of a body before a new one.
     pub fn edited(&mut self, body: usize, before: BoneSettings) {
         self.push(Change::Wish(body, before));
     }
