@@ -35,7 +35,7 @@ const PAGE: &str = "docs/benchmarks.md";
 /// Number of rounds in which the engines alternate.
 const ROUNDS: u32 = 3;
 
-/// Number of starts of a heap, between which the engines alternate: a single run of a chaotic scene has little meaning.
+/// Number of slightly different starts of a heap, because one run of a chaotic scene has little meaning.
 const STARTS: u32 = 5;
 
 /// Steps of a scene in a quick run.

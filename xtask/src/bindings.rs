@@ -11,7 +11,7 @@ const MANIFEST: &str = "bindings/Cargo.toml";
 /// Pages whose programs are run.
 const C_PAGES: &[&str] = &["docs/c.md"];
 const PYTHON_PAGES: &[&str] = &["README.md", "docs/python.md"];
-/// Strict warnings, so that the header never disturbs a user's build.
+/// Strict warnings, so that the header causes no warning in a user's build.
 const WARNINGS: &[&str] = &["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"];
 /// System libraries that the static library needs on Linux.
 const SYSTEM: &[&str] = &["-lm", "-lpthread", "-ldl"];
@@ -211,7 +211,9 @@ mod tests {
 
     #[test]
     fn the_pages_have_programs() {
-        assert!(C_PAGES.iter().all(|page| !blocks(&read(page).expect("it is there"), "c").is_empty()));
+        assert!(
+            C_PAGES.iter().all(|page| !blocks(&read(page).expect("the file can be read"), "c").is_empty())
+        );
         assert!(printed(PYTHON_PAGES, "python").is_ok());
     }
 }

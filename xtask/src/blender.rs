@@ -140,9 +140,10 @@ mod tests {
     fn the_manifest_has_the_version_of_the_wheel() {
         let source = command::root().join("integrations/blender/sinew_blender");
         let version = format!("version = \"{}\"", env!("CARGO_PKG_VERSION"));
-        let manifest = fs::read_to_string(source.join("blender_manifest.toml")).expect("it is there");
+        let manifest =
+            fs::read_to_string(source.join("blender_manifest.toml")).expect("the file can be read");
         assert!(manifest.contains(&version), "blender_manifest.toml: not {version}");
-        let init = fs::read_to_string(source.join("__init__.py")).expect("it is there");
+        let init = fs::read_to_string(source.join("__init__.py")).expect("the file can be read");
         let numbers = format!("\"version\": ({})", env!("CARGO_PKG_VERSION").replace('.', ", "));
         assert!(init.contains(&numbers), "__init__.py: not {numbers}");
     }

@@ -1,4 +1,4 @@
-//! Checks before a commit: format, lints, house rules, and tests of the changed crates.
+//! Checks before a commit: format, lints, project rules, and tests of the changed crates.
 
 use crate::{ci, command, tidy};
 use anyhow::Result;
@@ -13,7 +13,7 @@ pub struct Check {
 }
 
 impl Check {
-    /// Runs format, lints, house rules and the tests of changed crates, in this order, up to the first failure.
+    /// Runs format, lints, project rules and the tests of changed crates, in this order, up to the first failure.
     ///
     /// # Errors
     /// If a check fails, or git fails.

@@ -9,16 +9,16 @@ use std::process::Command;
 /// Committed hashes, one line per scene: name, steps, hash.
 const PATH: &str = "xtask/golden.txt";
 
-/// Steps of a scene blessed for the first time: ten seconds, enough for most to fall asleep.
+/// Number of steps for a scene whose hash is stored for the first time: ten seconds, enough for most to fall asleep.
 const STEPS_DEFAULT: u32 = 600;
 
 /// A build and a number of threads.
 type Variant = (Profile, u32);
 
-/// The variant with both differences: enough to detect a difference.
+/// The variant that differs in both build and thread count, enough to detect a difference.
 const DIAGONAL: &[Variant] = &[(Profile::Debug, 1), (Profile::Release, 2)];
 
-/// Every combination: identifies the difference.
+/// Every combination of build and thread count, which identifies the cause of a difference.
 const ALL: &[Variant] =
     &[(Profile::Debug, 1), (Profile::Debug, 2), (Profile::Release, 1), (Profile::Release, 2)];
 
@@ -47,7 +47,7 @@ impl Golden {
 /// Extent of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coverage {
-    /// Debug on one thread, release on two.
+    /// Only the diagonal: debug on one thread, release on two.
     Diagonal,
     /// All builds × thread counts.
     All,
@@ -128,7 +128,7 @@ fn observe(known: &[GoldenHash], variants: &[Variant]) -> Result<Vec<GoldenHash>
         Profile::Debug => debug.clone(),
         Profile::Release => release.clone(),
     };
-    let any = binary(variants[0].0).context("no build to ask")?;
+    let any = binary(variants[0].0).context("no build to run")?;
     let mut observed = Vec::new();
     for scene in scenes(&any)? {
         let steps =
@@ -209,7 +209,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn new_gone_and_different_scenes_are_reported() {
+    fn added_removed_and_different_scenes_are_reported() {
         let committed = parse("a 10 aa\nb 20 bb\nc 30 cc\n").expect("well formed");
         assert_eq!(differences(&committed, &committed), [""; 0]);
         let found = parse("a 10 aa\nb 20 b0\nd 30 dd\n").expect("well formed");

@@ -9,18 +9,13 @@ use std::path::Path;
 /// Scenes of the gallery: name, steps after which its picture is taken, title, and one line.
 pub const GALLERY: [(&str, u32, &str, &str); 12] = [
     ("brawl", 260, "A brawl", "Characters walk among crates, are struck, fall over each other and get up."),
-    (
-        "cape",
-        240,
-        "Cloth on a character",
-        "A cape of cloth goes along through the walk, the fall and the get-up.",
-    ),
+    ("cape", 240, "Cloth on a character", "A cape of cloth follows the walk, the fall and the get-up."),
     ("arena", 400, "Balance", "Powered figures push each other. They step to catch themselves, or fall."),
     (
         "uneven_ground",
         190,
         "Feet on the ground",
-        "A walk made for a flat floor goes over waves by inverse kinematics.",
+        "Inverse kinematics adapts a walk on a flat floor to waves.",
     ),
     ("crowd", 200, "A crowd", "Figures are hit in waves, fall over each other, and all get up again."),
     ("street", 300, "A street", "Movers push crates, flinch and fall when hit, ride a lift and jump."),

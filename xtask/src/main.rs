@@ -43,7 +43,7 @@ enum Task {
     Check(check::Check),
     /// All checks before a merge, besides `cargo test --workspace`
     Ci(ci::Ci),
-    /// House rules that no compiler checks
+    /// Project rules that the compiler does not check
     Tidy(tidy::Tidy),
     /// State hashes of all scenes, against the committed ones
     Golden(golden::Golden),
@@ -71,11 +71,11 @@ enum Task {
     Web(web::Web),
     /// Fuzz the readers
     Fuzz(fuzz::Fuzz),
-    /// Random lives, from where the last run ended
+    /// Random call sequences, from the seed at which the last run ended
     Lives(searches::Lives),
-    /// An hour of game, checked after each step
+    /// An hour of simulated time in all scenes, checked after each step
     Soak(searches::Soak),
-    /// Random comments, messages, names and page lines, to be checked by a reader
+    /// Draw random comments, messages, test names and page lines, to be judged by a reader
     Sample(sample::Sample),
 }
 

@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn programs_are_taken_as_they_are_printed() {
+    fn programs_are_extracted_as_printed() {
         let page = "Text.\n\n```rust\nlet x = 1;\n# let hidden = 2;\n#[derive(Debug)]\nstruct A;\n```\n\n\
                     ```sh\ncargo run\n```\n\n```rust\nfn main() {}\n```\n";
         let programs = blocks(page, "rust");
@@ -137,17 +137,17 @@ mod tests {
     #[test]
     fn every_page_has_programs() {
         for page in PAGES.iter().map(|page| page.0).chain([BEVY_PAGE]) {
-            assert!(!blocks(&read(page).expect("it is there"), "rust").is_empty(), "{page}");
+            assert!(!blocks(&read(page).expect("the file can be read"), "rust").is_empty(), "{page}");
         }
-        let printed = blocks(&read(BEVY_PAGE).expect("it is there"), "toml");
+        let printed = blocks(&read(BEVY_PAGE).expect("the file can be read"), "toml");
         assert!(printed.iter().all(|block| block.contains("bevy_sinew = ")) && printed.len() == 2);
     }
 
     /// The page shows the program that the package `window` compiles.
     #[test]
     fn program_with_a_window_is_the_compiled_one() {
-        let shown = blocks(&read(BEVY_PAGE).expect("it is there"), "rust,ignore").swap_remove(0);
-        let file = read("integrations/bevy_sinew/window/examples/first.rs").expect("it is there");
+        let shown = blocks(&read(BEVY_PAGE).expect("the file can be read"), "rust,ignore").swap_remove(0);
+        let file = read("integrations/bevy_sinew/window/examples/first.rs").expect("the file can be read");
         let (_, program) = file.split_once("\n\n").expect("a comment comes first");
         assert_eq!(shown, program);
     }

@@ -103,7 +103,7 @@ pub fn measure(binary: &Path, file: &Path, gate: u32) -> Result<Measured> {
         return Ok(Measured::Built(serde_json::from_slice(&output.stdout)?));
     }
     let reasons_text = String::from_utf8_lossy(&output.stderr).into_owned();
-    // A refusal is one line; a panic is a bug.
+    // A rejected file gives one line; a panic is a bug.
     ensure!(output.status.code() == Some(1), "{}: {}\n{reasons_text}", file.display(), output.status);
     Ok(Measured::Refused(reasons_text.trim().rsplit(": ").next().unwrap_or_default().to_owned()))
 }

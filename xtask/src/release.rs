@@ -55,7 +55,7 @@ impl Release {
             "`cargo publish` in `integrations/bevy_sinew`".to_owned(),
             "wheels of `target/blender/wheels` to PyPI, `npm publish out/npm/sinew-physics.tgz`, the zip of `target/blender`".to_owned(),
         ]);
-        println!("Version {version} is ready but for what a person does:");
+        println!("Version {version} is ready except for these manual steps:");
         left.iter().enumerate().for_each(|(number, step)| println!("{}. {step}", number + 1));
         Ok(())
     }

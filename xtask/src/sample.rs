@@ -1,4 +1,4 @@
-//! A random sample of comments, pages, messages and test names, to be checked by a reader.
+//! A random sample of comments, messages, test names and page lines, to be judged by a reader.
 
 use crate::tidy::{File, Repo};
 use anyhow::Result;
@@ -6,7 +6,7 @@ use anyhow::Result;
 /// Shortest text that is sampled, characters: shorter ones are headings and single words.
 const SHORTEST: usize = 20;
 
-/// `cargo xtask sample`: prints random lines with words for people.
+/// `cargo xtask sample`: prints random lines of human-readable text.
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask sample --seed 7 --within crates/sinew_physics")]
 pub struct Sample {
@@ -37,7 +37,7 @@ impl Sample {
     }
 }
 
-/// Returns the lines of a file with words for people, each with its path and number.
+/// Returns the lines of a file that contain human-readable text, each with its path and number.
 fn lines(file: &File) -> Vec<String> {
     let mut is_code = false;
     let mut lines = Vec::new();

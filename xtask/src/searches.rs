@@ -17,10 +17,10 @@ const CHUNK: f64 = 5.0;
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask lives --of characters --minutes 60")]
 pub struct Lives {
-    /// Kind of lives
+    /// Kind of call sequences
     #[arg(long, value_enum, default_value_t = Of::Worlds)]
     of: Of,
-    /// Seed to begin at; by default where the last run ended
+    /// First seed; by default the one after the last run
     #[arg(long, value_name = "SEED")]
     from: Option<u64>,
     /// Duration, minutes
@@ -111,7 +111,7 @@ fn next_seed(log: &Path) -> Result<u64> {
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask soak --hours 0.5 --part brawl")]
 pub struct Soak {
-    /// Hours of game, shared among the parts
+    /// Hours of simulated time, shared among the parts
     #[arg(long, value_name = "H", default_value_t = 1.0)]
     hours: f64,
     /// Only this part; repeatable
@@ -139,11 +139,11 @@ mod tests {
     #[test]
     fn a_search_continues_where_it_ended() {
         let log = env::temp_dir().join(format!("sinew-search-{}.log", std::process::id()));
-        assert_eq!(next_seed(&log).expect("no log is a beginning"), 0);
+        assert_eq!(next_seed(&log).expect("a missing log gives the first seed"), 0);
         fs::write(&log, "seeds 0..60, 60 lives\nseeds 60..1790, 1730 lives\n").expect("a file");
-        assert_eq!(next_seed(&log).expect("it has lines"), 1790);
+        assert_eq!(next_seed(&log).expect("the log has lines"), 1790);
         fs::write(&log, "nothing\n").expect("a file");
         assert!(next_seed(&log).is_err());
-        fs::remove_file(&log).expect("it is there");
+        fs::remove_file(&log).expect("the file can be removed");
     }
 }

@@ -46,7 +46,7 @@ fn check_in(binary: &Path, folder: &Path, spawns: u32) -> Result<()> {
                     failed.push(format!("{name}: {}", gate["failures"]));
                 }
             }
-            // The mannequin has a skin, so a refusal is a fault.
+            // The mannequin has a skin, so a rejection is a failure.
             Measured::Refused(what) => {
                 ensure!(file.parent() != Some(folder), "{name} is refused: {what}");
                 eprintln!("{name}: refused, {what}");

@@ -44,7 +44,7 @@ fn build_for(target: &str, arguments: &[&str]) -> Result<()> {
     command::run(command::cargo(arguments).args(["--target", target]))
 }
 
-/// Checks that the golden soup has the same bits in Node, with vectors and without.
+/// Checks that the hashes of all eight-lane operations are the same in Node, with vectors and without.
 ///
 /// # Errors
 /// If the bits differ, or the test does not compile.

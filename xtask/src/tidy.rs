@@ -1,4 +1,4 @@
-//! House rules that no compiler checks. Each rule is one file and one function from the repository to
+//! Project rules that the compiler does not check. Each rule is one file and one function from the repository to
 //! findings; a test beside it plants a violation and expects its finding.
 //!
 //! The rules read tokens, not types ([`lexer`]): comments and strings never trigger a rule, but the rules miss names that are

@@ -117,7 +117,7 @@ fn null(name: &str) -> CallError {
 /// # Safety
 /// The pointer is null or points to a `T` that no other thread changes during the borrow.
 pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Outcome<&'a T> {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     unsafe { pointer.as_ref() }.ok_or_else(|| null(name))
 }
 
@@ -126,7 +126,7 @@ pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Outcome<&'a
 /// # Safety
 /// The pointer is null or points to a `T` that no other thread uses during the borrow.
 pub(crate) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &str) -> Outcome<&'a mut T> {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     unsafe { pointer.as_mut() }.ok_or_else(|| null(name))
 }
 
@@ -142,7 +142,7 @@ pub(crate) unsafe fn elements<'a, T>(pointer: *const T, count: usize, name: &str
     if pointer.is_null() {
         return Err(null(name));
     }
-    // SAFETY: as the caller promises, and not larger than memory.
+    // SAFETY: the caller guarantees the pointer and the count, which is not larger than memory.
     Ok(unsafe { core::slice::from_raw_parts(pointer, count) })
 }
 
@@ -166,7 +166,7 @@ pub(crate) fn room<T>(pointer: *mut T, name: &str) -> Outcome {
 /// The pointer is null or points to room for a `T`.
 pub(crate) unsafe fn give<T>(pointer: *mut T, name: &str, value: T) -> Outcome {
     room(pointer, name)?;
-    // SAFETY: as the caller promises; the old content may be uninitialized, so it is not dropped.
+    // SAFETY: the caller guarantees a valid pointer; the old content may be uninitialized, so it is not dropped.
     unsafe { pointer.write(value) };
     Ok(())
 }
@@ -181,7 +181,7 @@ pub(crate) unsafe fn fill<T: Copy>(
     capacity: usize,
     count: *mut usize,
 ) -> Outcome {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     unsafe { give(count, "count", values.len()) }?;
     if values.len() > capacity {
         let what = format!("room for {capacity} of {}", values.len());
@@ -191,7 +191,7 @@ pub(crate) unsafe fn fill<T: Copy>(
         return Ok(());
     }
     room(buffer, "the buffer")?;
-    // SAFETY: as the caller promises; the buffer is the caller's, so it does not overlap ours.
+    // SAFETY: the caller guarantees the capacity; the buffer is the caller's, so it does not overlap ours.
     unsafe { core::ptr::copy_nonoverlapping(values.as_ptr(), buffer, values.len()) };
     Ok(())
 }
@@ -204,7 +204,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Outcome<&'a
     if pointer.is_null() {
         return Err(null(name));
     }
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     let text = unsafe { CStr::from_ptr(pointer) }.to_str();
     text.map_err(|_| error(SinewStatus::BadArgument, format!("{name} is not UTF-8")))
 }
@@ -215,7 +215,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Outcome<&'a
 /// As [`give`].
 pub(crate) unsafe fn give_handle<T>(pointer: *mut *mut T, name: &str, value: T) -> Outcome {
     room(pointer, name)?;
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     unsafe { give(pointer, name, Box::into_raw(Box::new(value))) }
 }
 
@@ -226,7 +226,7 @@ pub(crate) unsafe fn give_handle<T>(pointer: *mut *mut T, name: &str, value: T) 
 pub(crate) unsafe fn free<T>(pointer: *mut T) {
     if !pointer.is_null() {
         guard(|| {
-            // SAFETY: as the caller promises.
+            // SAFETY: the caller guarantees the conditions under `# Safety`.
             drop(unsafe { Box::from_raw(pointer) });
             Ok(())
         });

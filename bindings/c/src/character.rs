@@ -66,7 +66,7 @@ pub unsafe extern "C" fn sinew_character_def_load(
         let file = if path.is_null() {
             embedded()
         } else {
-            // SAFETY: as the caller promises.
+            // SAFETY: the caller guarantees the conditions under `# Safety`.
             CharacterFile::load(Path::new(unsafe { text(path, "path") }?), &Corrections::default())?
         };
         let (ragdoll, _) = file.build(&Wishes::default())?;
@@ -77,7 +77,7 @@ pub unsafe extern "C" fn sinew_character_def_load(
             .iter()
             .map(|joint| CString::new(joint.name.as_str()).unwrap_or_default())
             .collect();
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give_handle(def, "def", SinewCharacterDef { def: Arc::new(made), names }) }
     })
 }
@@ -88,7 +88,7 @@ pub unsafe extern "C" fn sinew_character_def_load(
 /// `def` is null or came from `sinew_character_def_load` and is not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_def_free(def: *mut SinewCharacterDef) {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     unsafe { free(def) }
 }
 
@@ -101,7 +101,7 @@ pub unsafe extern "C" fn sinew_character_def_joint_count(
     def: *const SinewCharacterDef,
     count: *mut usize,
 ) -> SinewStatus {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     guard(|| unsafe { give(count, "count", shared(def, "def")?.names.len()) })
 }
 
@@ -116,12 +116,12 @@ pub unsafe extern "C" fn sinew_character_def_joint_name(
     name: *mut *const c_char,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let names = &unsafe { shared(def, "def") }?.names;
         let named = names.get(joint);
         let named = named
             .ok_or_else(|| error(SinewStatus::BadArgument, format!("no joint {joint} of {}", names.len())))?;
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give(name, "name", named.as_ptr()) }
     })
 }
@@ -138,12 +138,12 @@ pub unsafe extern "C" fn sinew_character_spawn(
     character: *mut *mut SinewCharacter,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let (def, world) = unsafe { (&shared(def, "def")?.def, exclusive(world, "world")?) };
         crate::border::room(character, "character")?;
         let pose = pose.read("the pose")?;
         let spawned = world.world.change(|world| Ok(Character::spawn(world, def, pose)))?;
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give_handle(character, "character", SinewCharacter { character: Handle::new(spawned) }) }
     })
 }
@@ -160,10 +160,10 @@ pub unsafe extern "C" fn sinew_character_despawn(
 ) -> SinewStatus {
     guard(|| {
         crate::border::room(character, "character")?;
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let SinewCharacter { character } = *unsafe { Box::from_raw(character) };
         let character = character.get()?.clone();
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let world = &mut unsafe { exclusive(world, "world") }?.world;
         is_here(&character, world.get()?)?;
         world.change(|world| {
@@ -179,7 +179,7 @@ pub unsafe extern "C" fn sinew_character_despawn(
 /// `character` is null or came from `sinew_character_spawn` and is not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_character_free(character: *mut SinewCharacter) {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     unsafe { free(character) }
 }
 
@@ -204,7 +204,7 @@ unsafe fn together<R>(
     world: *mut SinewWorld,
     call: impl FnOnce(&mut Character, &mut sinew::physics::World) -> Outcome<R>,
 ) -> Outcome<R> {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     let (character, world) = unsafe { (exclusive(character, "character")?, exclusive(world, "world")?) };
     is_here(character.character.get()?, world.world.get()?)?;
     world.world.change(|world| character.character.change(|character| call(character, world)))
@@ -224,7 +224,7 @@ pub unsafe extern "C" fn sinew_character_update(
             character.update(world);
             Ok(())
         };
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { together(character, world, update) }
     })
 }
@@ -242,7 +242,7 @@ pub unsafe extern "C" fn sinew_character_hit(
     impulse: SinewVec3,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let name = unsafe { text(body, "body") }?;
         let impulse = impulse.read("the impulse")?;
         let hit = |character: &mut Character, world: &mut sinew::physics::World| {
@@ -250,7 +250,7 @@ pub unsafe extern "C" fn sinew_character_hit(
             character.hit(world, body, impulse);
             Ok(())
         };
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { together(character, world, hit) }
     })
 }
@@ -274,7 +274,7 @@ pub unsafe extern "C" fn sinew_character_go_limp(
             character.go_limp(world);
             Ok(())
         };
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { together(character, world, fall) }
     })
 }
@@ -289,7 +289,7 @@ pub unsafe extern "C" fn sinew_character_state(
     state: *mut SinewCharacterState,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let now = match unsafe { shared(character, "character") }?.character.get()?.state() {
             State::Animated => SinewCharacterState::Animated,
             State::Limp => SinewCharacterState::Limp,
@@ -298,7 +298,7 @@ pub unsafe extern "C" fn sinew_character_state(
             State::Flinching => SinewCharacterState::Flinching,
             State::Powered => SinewCharacterState::Powered,
         };
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give(state, "state", now) }
     })
 }
@@ -315,10 +315,10 @@ pub unsafe extern "C" fn sinew_character_bodies(
     count: *mut usize,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let bodies = unsafe { shared(character, "character") }?.character.get()?.bodies();
         let bodies: Vec<SinewBodyId> = bodies.iter().map(|&body| body.into()).collect();
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { fill(&bodies, ids, capacity, count) }
     })
 }
@@ -335,14 +335,14 @@ pub unsafe extern "C" fn sinew_character_pose(
     count: *mut usize,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let now = unsafe { shared(character, "character") }?.character.get()?.pose();
         let local = |local: &sinew::anim::LocalTransform| SinewLocalTransform {
             pose: sinew::math::Transform::new(local.translation, local.rotation).into(),
             scale: local.scale.into(),
         };
         let all: Vec<SinewLocalTransform> = now.iter().map(local).collect();
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { fill(&all, pose, capacity, count) }
     })
 }
@@ -357,7 +357,7 @@ pub unsafe extern "C" fn sinew_character_world_from_model(
     matrix: *mut f32,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let affine = unsafe { shared(character, "character") }?.character.get()?.world_from_model();
         let (m, t) = (affine.linear, affine.translation);
         let rows = [
@@ -365,7 +365,7 @@ pub unsafe extern "C" fn sinew_character_world_from_model(
             [m.x_axis.y, m.y_axis.y, m.z_axis.y, t.y],
             [m.x_axis.z, m.y_axis.z, m.z_axis.z, t.z],
         ];
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { fill(rows.as_flattened(), matrix, 12, &mut 0) }
     })
 }
@@ -383,9 +383,9 @@ pub unsafe extern "C" fn sinew_character_save(
 ) -> SinewStatus {
     guard(|| {
         let mut w = Writer::new();
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { shared(character, "character") }?.character.get()?.save(&mut w);
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { fill(w.as_bytes(), bytes, capacity, size) }
     })
 }
@@ -401,7 +401,7 @@ pub unsafe extern "C" fn sinew_character_load(
     size: usize,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let (character, bytes) =
             unsafe { (exclusive(character, "character")?, elements(bytes, size, "bytes")?) };
         character.character.change(|character| {

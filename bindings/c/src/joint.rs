@@ -95,14 +95,14 @@ pub unsafe extern "C" fn sinew_world_add_joint(
     id: *mut SinewJointId,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let (world, def) = unsafe { (exclusive(world, "world")?, shared(def, "def")?) };
         room(id, "id")?;
         let added = world.world.change(|world| {
             let def = def.read(world)?;
             refused(|| world.add_joint(&def))
         })?;
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give(id, "id", added.into()) }
     })
 }
@@ -113,7 +113,7 @@ pub unsafe extern "C" fn sinew_world_add_joint(
 /// `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_remove_joint(world: *mut SinewWorld, id: SinewJointId) -> SinewStatus {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     guard(|| unsafe {
         exclusive(world, "world")?.world.change(|world| {
             let joint = joint(world, id)?;
@@ -137,7 +137,7 @@ pub unsafe extern "C" fn sinew_world_drive_joint(
     damping_ratio: f32,
     max_torque: f32,
 ) -> SinewStatus {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     guard(|| unsafe {
         let rotation = Rotation::from_scaled_axis(target.read("the target")?);
         let softness = Softness::Frequency { hertz, damping_ratio };
@@ -161,9 +161,9 @@ pub unsafe extern "C" fn sinew_world_joint_gap(
     gap: *mut f32,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let world = unsafe { shared(world, "world") }?.world.get()?;
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give(gap, "gap", world.joint_gap(joint(world, id)?)) }
     })
 }
@@ -179,9 +179,9 @@ pub unsafe extern "C" fn sinew_world_joint_pose(
     pose: *mut SinewPose,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let world = unsafe { shared(world, "world") }?.world.get()?;
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give(pose, "pose", world.joint_transform(joint(world, id)?).into()) }
     })
 }

@@ -74,15 +74,15 @@ pub unsafe extern "C" fn sinew_world_ray(
     found: *mut u32,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let world = unsafe { shared(world, "world") }?.world.get()?;
         let ray = Ray { origin: origin.read("the origin")?, direction: way.read("the way")? };
         let first = world.query().first(&ray);
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give(found, "found", u32::from(first.is_some())) }?;
         let Some(first) = first else { return Ok(()) };
         let (point, normal) = (first.point.into(), first.normal.into());
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe {
             give(hit, "hit", SinewRayHit { body: first.body.into(), point, normal, fraction: first.fraction })
         }
@@ -103,7 +103,7 @@ pub unsafe extern "C" fn sinew_world_overlap(
     count: *mut usize,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let world = unsafe { shared(world, "world") }?.world.get()?;
         let shape = shape.read()?;
         if shape == Shape::HalfSpace {
@@ -116,7 +116,7 @@ pub unsafe extern "C" fn sinew_world_overlap(
         world.query().bodies(&OverlapWith(Probe::new(shape, pose.read("the pose")?)), &mut bodies);
         bodies.sort_unstable();
         let bodies: Vec<SinewBodyId> = bodies.into_iter().map(SinewBodyId::from).collect();
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { fill(&bodies, ids, capacity, count) }
     })
 }
@@ -133,7 +133,7 @@ pub unsafe extern "C" fn sinew_world_contacts(
     count: *mut usize,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let world = unsafe { shared(world, "world") }?.world.get()?;
         let mut all = Vec::new();
         for contact in world.contacts() {
@@ -146,7 +146,7 @@ pub unsafe extern "C" fn sinew_world_contacts(
                 impulse: point.impulse,
             }));
         }
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { fill(&all, contacts, capacity, count) }
     })
 }
@@ -164,7 +164,7 @@ pub unsafe extern "C" fn sinew_world_events(
     count: *mut usize,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let events = unsafe { shared(world, "world") }?.world.get()?.events();
         let pair = |a: BodyId, b: BodyId| SinewPair { a: a.into(), b: b.into() };
         let all: Outcome<Vec<SinewPair>> = match kind {
@@ -179,7 +179,7 @@ pub unsafe extern "C" fn sinew_world_events(
             }
             kind => Err(error(SinewStatus::BadArgument, format!("there are no events of kind {kind}"))),
         };
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { fill(&all?, pairs, capacity, count) }
     })
 }

@@ -37,10 +37,10 @@ pub unsafe extern "C" fn sinew_ragdoll_load(
         let def = if path.is_null() {
             embedded().build(&Wishes::default())?.0
         } else {
-            // SAFETY: as the caller promises.
+            // SAFETY: the caller guarantees the conditions under `# Safety`.
             load_ragdoll(Path::new(unsafe { text(path, "path") }?))?.def
         };
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give_handle(ragdoll, "ragdoll", SinewRagdoll::new(def)) }
     })
 }
@@ -51,7 +51,7 @@ pub unsafe extern "C" fn sinew_ragdoll_load(
 /// `ragdoll` is null or came from `sinew_ragdoll_load` and is not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_ragdoll_free(ragdoll: *mut SinewRagdoll) {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     unsafe { free(ragdoll) }
 }
 
@@ -64,7 +64,7 @@ pub unsafe extern "C" fn sinew_ragdoll_body_count(
     ragdoll: *const SinewRagdoll,
     count: *mut usize,
 ) -> SinewStatus {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     guard(|| unsafe { give(count, "count", shared(ragdoll, "ragdoll")?.def.bodies.len()) })
 }
 
@@ -79,12 +79,12 @@ pub unsafe extern "C" fn sinew_ragdoll_role(
     role: *mut *const c_char,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let roles = &unsafe { shared(ragdoll, "ragdoll") }?.roles;
         let named = roles.get(body);
         let named = named
             .ok_or_else(|| error(SinewStatus::BadArgument, format!("no body {body} of {}", roles.len())))?;
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give(role, "role", named.as_ptr()) }
     })
 }
@@ -105,10 +105,10 @@ pub unsafe extern "C" fn sinew_ragdoll_spawn(
     count: *mut usize,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let (def, world) = unsafe { (&shared(ragdoll, "ragdoll")?.def, exclusive(world, "world")?) };
         let pose = pose.read("the pose")?;
-        // SAFETY: likewise. Stale ids are written first, so that a lack of room is found before the world is changed.
+        // SAFETY: the caller guarantees the conditions under `# Safety`. Stale ids are written first, so that a lack of room is found before the world is changed.
         unsafe { fill(&vec![SinewBodyId { bits: u64::MAX }; def.bodies.len()], ids, capacity, count) }?;
         let states: Vec<BodyState> = def
             .bodies
@@ -121,7 +121,7 @@ pub unsafe extern "C" fn sinew_ragdoll_spawn(
         let settings = BodySettings::default();
         let spawned = world.world.change(|world| Ok(Ragdoll::spawn(world, def, &states, &settings)))?;
         let bodies: Vec<SinewBodyId> = spawned.bodies.into_iter().map(SinewBodyId::from).collect();
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { fill(&bodies, ids, capacity, count) }
     })
 }

@@ -10,7 +10,7 @@ use sinew::math::{Reader, Writer};
 /// `world` is null or a world that no other thread changes, `hash` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_hash(world: *const SinewWorld, hash: *mut u64) -> SinewStatus {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     guard(|| unsafe { give(hash, "hash", shared(world, "world")?.world.get()?.hash()) })
 }
 
@@ -27,9 +27,9 @@ pub unsafe extern "C" fn sinew_world_save(
 ) -> SinewStatus {
     guard(|| {
         let mut w = Writer::new();
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { shared(world, "world") }?.world.get()?.save(&mut w);
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { fill(w.as_bytes(), bytes, capacity, size) }
     })
 }
@@ -45,7 +45,7 @@ pub unsafe extern "C" fn sinew_world_load(
     size: usize,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let (world, bytes) = unsafe { (exclusive(world, "world")?, elements(bytes, size, "bytes")?) };
         world.world.change(|world| {
             let loaded = world.load(&mut Reader::new(bytes));

@@ -74,7 +74,7 @@ pub unsafe extern "C" fn sinew_world_def_default(def: *mut SinewWorldDef) -> Sin
         let WorldDef { gravity, step_nanoseconds, substeps, .. } = WorldDef::default();
         let default =
             SinewWorldDef { gravity: gravity.into(), step_nanoseconds, substeps, quality: 1, sleeping: 1 };
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give(def, "def", default) }
     })
 }
@@ -102,7 +102,7 @@ pub unsafe extern "C" fn sinew_body_def_default(def: *mut SinewBodyDef) -> Sinew
             mask: filter.mask,
             user_data: 0,
         };
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give(def, "def", default) }
     })
 }
@@ -138,7 +138,7 @@ impl SinewBodyDef {
     /// # Safety
     /// `shapes` is null or points to `shape_count` shapes.
     unsafe fn read(&self) -> Outcome<BodyDef> {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let shapes = unsafe { elements(self.shapes, self.shape_count, "shapes") }?;
         let material =
             Material { friction: self.friction, restitution: self.restitution, ..Material::DEFAULT };
@@ -209,9 +209,9 @@ pub unsafe extern "C" fn sinew_world_new(
     world: *mut *mut SinewWorld,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let def = unsafe { def.as_ref() }.map_or_else(|| Ok(WorldDef::default()), SinewWorldDef::read)?;
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give_handle(world, "world", SinewWorld::of(World::new(def))) }
     })
 }
@@ -222,7 +222,7 @@ pub unsafe extern "C" fn sinew_world_new(
 /// `world` is null or came from `sinew_world_new` and is not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_free(world: *mut SinewWorld) {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     unsafe { free(world) }
 }
 
@@ -233,7 +233,7 @@ pub unsafe extern "C" fn sinew_world_free(world: *mut SinewWorld) {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_step(world: *mut SinewWorld, steps: u32, threads: u32) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let SinewWorld { world, threads: pool } = unsafe { exclusive(world, "world") }?;
         let count = threads.min(256) as usize;
         if count > 1 && pool.as_ref().is_none_or(|pool| pool.count() != count) {
@@ -258,7 +258,7 @@ pub unsafe extern "C" fn sinew_world_step(world: *mut SinewWorld, steps: u32, th
 /// `world` is null or a world that no other thread changes, `steps` is null or points to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_step_count(world: *const SinewWorld, steps: *mut u64) -> SinewStatus {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     guard(|| unsafe { give(steps, "steps", shared(world, "world")?.world.get()?.step_count()) })
 }
 
@@ -273,11 +273,11 @@ pub unsafe extern "C" fn sinew_world_add_body(
     id: *mut SinewBodyId,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let (world, def) = unsafe { (exclusive(world, "world")?, shared(def, "def")?.read()?) };
         room(id, "id")?;
         let added = world.world.change(|world| refused(|| world.add_body(&def)))?;
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { give(id, "id", added.into()) }
     })
 }
@@ -288,7 +288,7 @@ pub unsafe extern "C" fn sinew_world_add_body(
 /// `world` is null or a world that no other thread uses.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_world_remove_body(world: *mut SinewWorld, id: SinewBodyId) -> SinewStatus {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     guard(|| unsafe {
         exclusive(world, "world")?.world.change(|world| {
             let body = body(world, id)?;
@@ -309,10 +309,10 @@ pub unsafe extern "C" fn sinew_world_bodies(
     count: *mut usize,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let world = unsafe { shared(world, "world") }?.world.get()?;
         let all: Vec<SinewBodyId> = world.body_ids().map(SinewBodyId::from).collect();
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { fill(&all, ids, capacity, count) }
     })
 }
@@ -329,11 +329,11 @@ pub unsafe extern "C" fn sinew_world_poses(
     poses: *mut SinewPose,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let (world, ids) = unsafe { (shared(world, "world")?.world.get()?, elements(ids, count, "ids")?) };
         let pose = |&id: &SinewBodyId| Ok(world.transform(body(world, id)?).into());
         let all: Vec<SinewPose> = ids.iter().map(pose).collect::<Outcome<_>>()?;
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { fill(&all, poses, count, &mut 0) }
     })
 }
@@ -350,11 +350,11 @@ pub unsafe extern "C" fn sinew_world_velocities(
     velocities: *mut SinewVelocity,
 ) -> SinewStatus {
     guard(|| {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         let (world, ids) = unsafe { (shared(world, "world")?.world.get()?, elements(ids, count, "ids")?) };
         let velocity = |&id: &SinewBodyId| Ok(world.velocity(body(world, id)?).into());
         let all: Vec<SinewVelocity> = ids.iter().map(velocity).collect::<Outcome<_>>()?;
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the conditions under `# Safety`.
         unsafe { fill(&all, velocities, count, &mut 0) }
     })
 }
@@ -369,7 +369,7 @@ pub unsafe extern "C" fn sinew_world_set_pose(
     id: SinewBodyId,
     pose: SinewPose,
 ) -> SinewStatus {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     guard(|| unsafe {
         let pose = pose.read("the pose")?;
         exclusive(world, "world")?.world.change(|world| {
@@ -390,7 +390,7 @@ pub unsafe extern "C" fn sinew_world_set_velocity(
     id: SinewBodyId,
     velocity: SinewVelocity,
 ) -> SinewStatus {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     guard(|| unsafe {
         let velocity = velocity.read("the velocity")?;
         exclusive(world, "world")?.world.change(|world| {
@@ -412,7 +412,7 @@ pub unsafe extern "C" fn sinew_world_push(
     impulse: SinewVec3,
     point: *const SinewVec3,
 ) -> SinewStatus {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the conditions under `# Safety`.
     guard(|| unsafe {
         let impulse = impulse.read("the impulse")?;
         let point: Option<Vec3> = point.as_ref().map(|point| point.read("the point")).transpose()?;

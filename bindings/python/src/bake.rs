@@ -374,7 +374,7 @@ impl Character {
         self.def.swept_radius()
     }
 
-    /// Names of the clips that it knows, its own and Sinew's.
+    /// Names of the clips: the file's own, and Sinew's get-ups.
     #[getter]
     fn clips(&self) -> Vec<&str> {
         self.def.motions().clips.iter().map(|clip| clip.name.as_str()).collect()

@@ -9,7 +9,7 @@ pyo3::create_exception!(
     _sinew,
     FileError,
     SinewError,
-    "A file that cannot be read or written, or is not what it should be: the message names the file and the place."
+    "A file that cannot be read or written, or is invalid; the message names the file and the place."
 );
 
 pyo3::create_exception!(_sinew, Cancelled, SinewError, "A bake that its progress function ended.");

@@ -163,7 +163,7 @@ export const tests = {
     return { taken, heap, left };
   },
 
-  // The rest of the adapter: colliders, height fields, rays, joints, ropes, soft balls, snapshots, a rotated parent.
+  // Tests the rest of the adapter: colliders, height fields, rays, joints, ropes, soft balls, snapshots, a rotated parent.
   async rest() {
     const physics = await Sinew.create({ gravity: [0, -9.81, 0] });
     const { scene, camera } = stage();

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// Lets the ragdoll walk for `seconds`; returns the largest horizontal distance of its chest from its feet, metres.
 fn walk(world: &mut World, puppet: &mut Character, seconds: f32) -> f32 {
-    let chest = puppet.def().body_named("chest").expect("it has a chest");
+    let chest = puppet.def().body_named("chest").expect("the character has this body");
     let mut sway = 0.0;
     for _ in 0..(seconds * 60.0) as usize {
         world.step();
@@ -31,7 +31,7 @@ pub fn main() {
     puppet.set_preset(&mut world, Preset::Powered);
 
     let calm = walk(&mut world, &mut puppet, 2.0);
-    let chest = def.body_named("chest").expect("it has a chest");
+    let chest = def.body_named("chest").expect("the character has this body");
     puppet.hit(&mut world, chest, Vec3::X * 40.0);
     let pushed = walk(&mut world, &mut puppet, 2.0);
     let aside = puppet.world_from_character().translation.x;

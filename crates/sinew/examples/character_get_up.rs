@@ -21,7 +21,7 @@ pub fn main() {
         }
         world.step();
         hero.update(&mut world); // after each step
-        if hero.state() != *seen.last().expect("it has one") {
+        if hero.state() != *seen.last().expect("the list is not empty") {
             println!("{:5.2} s: {:?}", world.time(), hero.state());
             seen.push(hero.state());
         }

@@ -30,7 +30,7 @@ fn main() {
     let mut knight = Character::spawn(&mut world, &def, Transform::IDENTITY);
     play(&mut world, &mut knight, 1.0);
     // Without an arm the knight walks on. The limb falls, and has its joints of the skin.
-    let mut arm = knight.detach(&mut world, "leftUpperArm").expect("it has two arms");
+    let mut arm = knight.detach(&mut world, "leftUpperArm").expect("the knight has this arm");
     println!(
         "the arm has {} bodies and {} joints of the skin",
         arm.bodies().len(),
@@ -39,7 +39,7 @@ fn main() {
     play(&mut world, &mut knight, 1.0);
     assert_eq!(knight.state(), State::Animated);
     // Without a leg the knight falls, and stays down.
-    let leg = knight.detach(&mut world, "rightLowerLeg").expect("it has two legs");
+    let leg = knight.detach(&mut world, "rightLowerLeg").expect("the knight has this leg");
     play(&mut world, &mut knight, 8.0);
     assert_eq!(knight.state(), State::Limp);
     // A detached limb can be cut again.

@@ -53,6 +53,6 @@ pub fn main() {
 
     world.set_motor(hinge, Some(Motor::spin(-0.5, 200.0)));
     run(&mut world, 2.0);
-    println!("opened by a motor, the other way: {:.0}°", angle(&world, hinge));
+    println!("opened by a motor to the other side: {:.0}°", angle(&world, hinge));
     assert!((angle(&world, hinge) + 57.0).abs() < 3.0);
 }

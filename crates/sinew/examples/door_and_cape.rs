@@ -50,7 +50,7 @@ pub fn main() {
     let leaf = door(&mut world);
     let def = Arc::new(sinew::mannequin::character());
     let mut hero = Character::spawn(&mut world, &def, Transform::IDENTITY);
-    let chest = hero.bodies()[hero.def().body_named("chest").expect("it has a chest")];
+    let chest = hero.bodies()[hero.def().body_named("chest").expect("the character has this body")];
     let cape = cape(&mut world, chest, Vec3::new(0.0, 1.42, -0.17));
     let blade = Shape::Box { half_extents: Vec3::new(0.01, 0.01, 0.4) };
     let sword = world.add_body(&BodyDef::dynamic(blade));
@@ -62,7 +62,7 @@ pub fn main() {
         hero.update(&mut world);
         told.extend_from_slice(hero.events());
         let hem = world.particles(cape).positions()[45] - world.transform(chest).translation;
-        assert!(hem.length() < 0.9, "it hangs on: {hem}");
+        assert!(hem.length() < 0.9, "the cape stays attached: {hem}");
         if frame == 239 {
             let turned = world.transform(leaf).rotation.to_scaled_axis().length().to_degrees();
             let at = hero.world_from_character().translation.z;

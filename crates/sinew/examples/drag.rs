@@ -9,7 +9,7 @@ fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
     let def = Arc::new(sinew::mannequin::character());
-    let body = |name: &str| def.body_named(name).expect("it has that body");
+    let body = |name: &str| def.body_named(name).expect("the character has this body");
     let mut puppet = Character::spawn(&mut world, &def, Transform::IDENTITY);
     puppet.go_limp(&mut world);
     // The mouse takes the hand at its position and pulls with at most `Grab::speed` and `Grab::max_force`.
@@ -29,13 +29,13 @@ fn main() {
         1e3 * away,
         world.reaction(mouse.joint()).force.length()
     );
-    assert!(away < 0.1 && puppet.state() == State::Limp, "who is held does not get up");
+    assert!(away < 0.1 && puppet.state() == State::Limp, "a held character does not get up");
     // Another character takes the hand and walks away with it.
     let at = world.center_of_mass(hand) * Vec3::new(1.0, 0.0, 1.0);
     let mut hero =
         Character::spawn(&mut world, &def, Transform::from_translation(at + Vec3::new(-0.3, 0.0, 0.3)));
     let grab = Grab { reach: 1.5, ..Grab::HAND };
-    let grip = hero.grab(&mut world, "leftHand", hand, &grab).expect("it is in reach");
+    let grip = hero.grab(&mut world, "leftHand", hand, &grab).expect("the body is within reach");
     mouse.release(&mut world);
     hero.set_move(Vec3::ZERO);
     for step in 0..480 {

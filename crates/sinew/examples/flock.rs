@@ -193,7 +193,7 @@ pub fn main() {
     world.save(&mut snapshot);
     let mut other = World::new(WorldDef::default());
     other.register_kind(|| Box::new(Flock::new(0)));
-    other.load(&mut Reader::new(snapshot.as_bytes())).expect("it was just saved");
+    other.load(&mut Reader::new(snapshot.as_bytes())).expect("the saved state can be loaded");
     let goes_on = [&mut world, &mut other].map(|world| {
         fly(world, flock, 5);
         world.hash()

@@ -180,7 +180,7 @@ pub fn main() {
     let mut other = World::new(WorldDef::default());
     // A new escapement without a pendulum: the saved state has the id of the pendulum.
     other.register_kind(|| Box::new(Escapement::new(BodyId::from_bits(0), 0.0)));
-    other.load(&mut Reader::new(snapshot.as_bytes())).expect("it was just saved");
+    other.load(&mut Reader::new(snapshot.as_bytes())).expect("the saved state can be loaded");
     let goes_on = [&mut world, &mut other].map(|world| {
         run(world, escapement, 1);
         world.hash()

@@ -15,8 +15,8 @@ fn rig() -> Result<Rig, Box<dyn std::error::Error>> {
 /// Builds a ragdoll and drops it.
 pub fn main() {
     let rig = rig().expect("the file can be read");
-    let analysis = analyze(&rig).expect("it has a skin");
-    let (def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("it has limbs");
+    let analysis = analyze(&rig).expect("the rig has a skin");
+    let (def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig has limbs");
     println!("{} bodies, {:.0} kg, {:.2} m tall", def.bodies.len(), def.total_mass, def.height);
     def.bodies
         .iter()

@@ -33,13 +33,13 @@ pub fn main() {
     assert_eq!(foreseen, rolled, "to the last bit");
     let hash = world.hash();
 
-    world.load(&mut Reader::new(bytes.as_bytes())).expect("it was saved");
+    world.load(&mut Reader::new(bytes.as_bytes())).expect("the saved state can be loaded");
     assert_ne!(world.hash(), hash, "two seconds younger");
     (0..120).for_each(|_| world.step());
     assert_eq!(world.hash(), hash, "and the same again");
 
-    world.load(&mut Reader::new(bytes.as_bytes())).expect("it was saved");
+    world.load(&mut Reader::new(bytes.as_bytes())).expect("the saved state can be loaded");
     world.apply_impulse_at_center(dice[0], Vec3::X * 0.5);
     (0..120).for_each(|_| world.step());
-    assert_ne!(world.transform(dice[0]), rolled[0], "pushed, it goes another way");
+    assert_ne!(world.transform(dice[0]), rolled[0], "a pushed die moves differently");
 }

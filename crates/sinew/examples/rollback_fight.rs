@@ -50,8 +50,10 @@ impl Fight {
 
     fn load(&mut self, bytes: &[u8]) {
         let mut bytes = Reader::new(bytes);
-        self.world.load(&mut bytes).expect("it was saved here");
-        self.fighters.iter_mut().for_each(|fighter| fighter.load(&mut bytes).expect("it was saved here"));
+        self.world.load(&mut bytes).expect("the saved state can be loaded");
+        self.fighters
+            .iter_mut()
+            .for_each(|fighter| fighter.load(&mut bytes).expect("the saved state can be loaded"));
     }
 }
 

@@ -54,6 +54,6 @@ pub fn main() {
     let bone = shoot(&mut world, &mut target, "chest", 90.0);
     assert_eq!((bone.is_some(), target.state()), (true, State::Limp), "that fells it");
     let told = run(&mut world, &mut target, 12.0);
-    assert!(told.contains(&CharacterEvent::Up), "and it gets up again: {told:?}");
-    println!("felled, it said {told:?}");
+    assert!(told.contains(&CharacterEvent::Up), "the walker gets up again: {told:?}");
+    println!("events of the fall: {told:?}");
 }

@@ -24,7 +24,7 @@ pub fn main() {
     let top = world.transform(tower[9]).translation;
     println!("the top is at {top:.3}");
     assert!((top - place(9)).length() < 0.02, "it stands where it was built: {top}");
-    assert_eq!(run(&mut world, 1.0), 0, "and sleeps: nothing is to be drawn anew");
+    assert_eq!(run(&mut world, 1.0), 0, "the sleeping tower has no changed pose");
 
     let heavy = ShapeDef { density: 5000.0, ..ShapeDef::new(Shape::sphere(0.3)) };
     let throw = BodyDef { linear_velocity: Vec3::X * 12.0, ..BodyDef::dynamic(heavy) };

@@ -36,7 +36,7 @@ pub fn main() {
     let mut hero = Character::spawn(&mut world, &def, Transform::IDENTITY);
     hero.set_move(Vec3::Z * 1.1);
     hero.face(Vec3::Z);
-    let feet = ["leftFoot", "rightFoot"].map(|foot| def.body_named(foot).expect("it has feet"));
+    let feet = ["leftFoot", "rightFoot"].map(|foot| def.body_named(foot).expect("the body exists"));
     let (mut on_floor, mut highest) = (0.0_f32, 0.0_f32);
     for step in 0..600 {
         world.step();
@@ -55,6 +55,6 @@ pub fn main() {
     println!(
         "at {end}; its lower foot was at most {highest:.2} m over the ground, on the floor {on_floor:.2}"
     );
-    assert!(end.z > 8.0 && hero.state() == State::Animated, "it goes up and down: {end}");
+    assert!(end.z > 8.0 && hero.state() == State::Animated, "the walker arrives: {end}");
     assert!(highest < on_floor + 0.12, "one foot is always down: {highest}");
 }

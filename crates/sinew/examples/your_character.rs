@@ -10,9 +10,10 @@ use std::sync::Arc;
 pub fn mannequin() -> sinew::LoadedCharacter {
     use sinew::formats::{ReadOptions, no_files, read_gltf, write_gltf};
     let own = sinew::mannequin::mannequin();
-    let bytes = write_gltf(&own.rig, &own.clips).expect("it can be written");
-    let file = read_gltf(&bytes, ReadOptions::default(), &mut no_files).expect("it was written just now");
-    sinew::character_of(file, "mannequin.glb", &Default::default()).expect("it has a skin")
+    let bytes = write_gltf(&own.rig, &own.clips).expect("the rig can be written as glTF");
+    let file =
+        read_gltf(&bytes, ReadOptions::default(), &mut no_files).expect("the written glTF can be read");
+    sinew::character_of(file, "mannequin.glb", &Default::default()).expect("the file has a skin")
 }
 
 /// Runs the given file, or the mannequin.

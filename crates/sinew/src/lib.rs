@@ -14,7 +14,7 @@
 //! hero.set_move(Vec3::Z * 1.2); // walk, m/s
 //! for step in 0..900 {
 //!     if step == 90 {
-//!         let chest = def.body_named("chest").expect("it has a chest");
+//!         let chest = def.body_named("chest").expect("the character has this body");
 //!         hero.hit(&mut world, chest, Vec3::new(60.0, 0.0, -60.0)); // N·s
 //!     }
 //!     world.step(); // 1/60 s

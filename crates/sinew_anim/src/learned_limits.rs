@@ -80,7 +80,7 @@ impl LearnedLimit {
 /// # Panics
 /// If a take does not fit the rig.
 pub fn learn_limits(rig: &Rig, takes: &[&Take]) -> Vec<LearnedLimit> {
-    assert!(takes.iter().all(|take| take.joints == rig.joints.len()), "takes of this rig");
+    assert!(takes.iter().all(|take| take.joints == rig.joints.len()), "the takes must fit the rig");
     let learn = |joint: JointIdx| {
         let of_take = |take: &&Take| {
             take.of_joint(joint).map(|local: LocalTransform| local.rotation).collect::<Vec<_>>()

@@ -84,7 +84,7 @@ impl Legs {
     /// # Panics
     /// If the analysis does not fit the rig.
     pub fn of(rig: &Rig, analysis: &RigAnalysis) -> Option<Self> {
-        assert_eq!(analysis.bind_model.len(), rig.joints.len(), "an analysis of this rig");
+        assert_eq!(analysis.bind_model.len(), rig.joints.len(), "the analysis must belong to the rig");
         let pelvis = analysis.joint_with(Role::Hips)?;
         let feet = [Foot::of(analysis, Side::Left)?, Foot::of(analysis, Side::Right)?];
         Some(Self { pelvis, feet, strays: strays(rig, analysis) })
@@ -148,7 +148,7 @@ fn strays(rig: &Rig, analysis: &RigAnalysis) -> Vec<Stray> {
 /// # Panics
 /// If the analysis does not fit the rig.
 pub fn add_ankles(rig: &mut Rig, analysis: &mut RigAnalysis) -> usize {
-    assert_eq!(analysis.bind_model.len(), rig.joints.len(), "an analysis of this rig");
+    assert_eq!(analysis.bind_model.len(), rig.joints.len(), "the analysis must belong to the rig");
     let mut added = 0;
     for side in [Side::Left, Side::Right] {
         let [thigh, shank, foot] = [Role::UpperLeg(side), Role::LowerLeg(side), Role::Foot(side)]

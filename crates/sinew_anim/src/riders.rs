@@ -44,7 +44,7 @@ impl Riders {
     /// # Panics
     /// If the analysis does not fit the rig.
     pub fn of(rig: &Rig, analysis: &RigAnalysis) -> Self {
-        assert_eq!(analysis.bind_model.len(), rig.joints.len(), "an analysis of this rig");
+        assert_eq!(analysis.bind_model.len(), rig.joints.len(), "the analysis must belong to the rig");
         let mut has_body = vec![false; rig.joints.len()];
         analysis.kept.iter().for_each(|bone| has_body[bone.joint] = true);
         let body_above = |joint: JointIdx| {

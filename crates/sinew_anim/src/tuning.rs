@@ -69,7 +69,7 @@ pub(crate) const LOOP_SEAM: f32 = 0.1;
 /// Number of frames before the end of a loop whose motion is added to [`LOOP_SEAM`]: many loops end one frame before
 /// their first pose.
 ///
-/// Larger or smaller: like [`LOOP_SEAM`], for fast clips. Shown by `sinew_cli` `convert`.
+/// Larger or smaller: the effects of [`LOOP_SEAM`], for fast clips. Shown by `sinew_cli` `convert`.
 pub(crate) const LAST_FRAMES: usize = 4;
 
 // cleanup/foot_slide.rs

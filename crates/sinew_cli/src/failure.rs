@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use std::fmt;
 use std::process::ExitCode;
 
-/// Shorthand of this crate.
+/// Result of a command, whose error is a [`Failure`].
 pub type Result<T, E = Failure> = std::result::Result<T, E>;
 
 /// Error of a command; displays as one line.

@@ -8,7 +8,7 @@
 //! write_atomic(&file, level.as_bytes())?;
 //! assert_eq!(load_world(&file)?.len(), 1);
 //! std::fs::remove_file(&file)?;
-//! let error = load_world(&file).expect_err("it is gone");
+//! let error = load_world(&file).expect_err("the file was removed");
 //! assert!(error.to_string().contains("sinew-doc"), "{error}"); // errors name the file
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

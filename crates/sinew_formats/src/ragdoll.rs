@@ -188,7 +188,7 @@ fn read_shape(at: At<'_>) -> Result<Shape> {
         let name = at.need("type")?.str()?;
         return Err(at.malformed(format!("a body of a ragdoll cannot be a {name}")));
     }
-    // The comparison is false for NaN.
+    // The comparison is false for NaN, so NaN is rejected.
     if !(shape.smallest_extent() >= SMALLEST && shape.bounding_radius() <= FARTHEST) {
         return Err(at.malformed("is smaller than a micrometre or larger than 1,000 km"));
     }
@@ -387,7 +387,7 @@ fn write_joint(def: &RagdollDef, joint: &RagdollJointDef) -> Value {
         JointKind::Universal { .. } => "universal",
         JointKind::Hinge { .. } => "hinge",
         JointKind::Fixed => "fixed",
-        kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
+        kind => unreachable!("{kind:?}: joints of a ragdoll only rotate"),
     };
     let mut object = Map::new();
     object.insert("parent".into(), write_reference(def, joint.parent));

@@ -11,7 +11,7 @@
 //! // Do two boxes overlap, and what is the shortest way out?
 //! let a = Obb::new(Vec3::ZERO, Rotation::IDENTITY, Vec3::new(1.0, 0.5, 0.5));
 //! let b = Obb::new(Vec3::new(0.0, 0.9, 0.0), Rotation::from_axis_angle(Vec3::Y, 0.5), Vec3::splat(0.5));
-//! let way = a.penetration(&b).expect("they overlap");
+//! let way = a.penetration(&b).expect("the boxes overlap");
 //! assert!((way.depth - 0.1).abs() < 1e-6 && way.direction == Vec3::Y);
 //!
 //! // Where do they touch? A face on a face: four points, their normal from A to B.

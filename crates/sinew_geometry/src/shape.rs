@@ -120,7 +120,7 @@ impl Shape {
     /// # Errors
     /// The reason, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
-        // The comparison is false for NaN.
+        // The comparison is false for NaN, so NaN is rejected.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         match *self {
             Self::Box { half_extents: h } if !(positive(h.x) && positive(h.y) && positive(h.z)) => {

@@ -8,7 +8,7 @@ const LAG: f32 = 0.3;
 /// the picture, and after a jump the camera arrives without a lag.
 const REACH: f32 = 0.16;
 
-/// Point that glides after a subject, metres, world space.
+/// Point that follows a subject with a smooth lag, metres, world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chase(Vec3);
 
@@ -38,7 +38,7 @@ mod tests {
     use sinew::math::Vec3;
 
     #[test]
-    fn it_glides_and_never_loses_its_subject() {
+    fn camera_moves_smoothly_and_keeps_its_subject_in_view() {
         let mut chase = Chase::at(Vec3::ZERO);
         let way = chase.go(Vec3::X * 0.1, 0.02, 5.0);
         assert!(way.x > 0.0 && way.x < 0.1, "{way:?}");

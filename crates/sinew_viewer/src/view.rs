@@ -259,7 +259,7 @@ mod tests {
     use sinew::physics::{BodyDef, Shape, WorldDef};
 
     #[test]
-    fn the_camera_stays_above_the_ground() {
+    fn camera_stays_above_the_ground() {
         let mut world = World::new(WorldDef::default());
         world.add_body(&BodyDef::fixed(Shape::HalfSpace));
         world.step();

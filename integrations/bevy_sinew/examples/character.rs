@@ -30,7 +30,8 @@ fn kind() -> CharacterDef {
     #[cfg(feature = "gltf")]
     if let Some(path) = std::env::args().find(|path| path.ends_with(".glb")) {
         let bytes = std::fs::read(&path).expect("the file can be read");
-        let file = bevy_sinew::read_character(&bytes, &path, &Default::default()).expect("it is a character");
+        let file =
+            bevy_sinew::read_character(&bytes, &path, &Default::default()).expect("the file is a character");
         return CharacterDef::clone(&file.def);
     }
     bevy_sinew::sinew::mannequin::character()
@@ -81,7 +82,8 @@ pub fn main() {
         assert!(heard.contains(&due), "{due:?} in {heard:?}");
     }
     let world = app.world_mut();
-    let (hero, place) = world.query::<(&CharacterHandle, &Transform)>().single(world).expect("it is there");
+    let (hero, place) =
+        world.query::<(&CharacterHandle, &Transform)>().single(world).expect("one such entity exists");
     println!("it is {:?}, at {:.2}", hero.state(), place.translation);
     assert!(hero.state() == State::Animated && place.translation.z > 3.0);
 }

@@ -50,7 +50,7 @@ fn setup(mut commands: Commands) {
 
 fn angle(app: &mut App) -> f32 {
     let world = app.world_mut();
-    let hinge = world.query::<&JointHandle>().single(world).expect("it has one").id();
+    let hinge = world.query::<&JointHandle>().single(world).expect("one such entity exists").id();
     world.resource::<Physics>().joint_transform(hinge).rotation.twist_angle(Vec3::X).to_degrees().abs()
 }
 
@@ -78,8 +78,11 @@ pub fn main() {
     (0..150).for_each(|_| app.update());
     let open = angle(&mut app);
     let world = app.world_mut();
-    let mover =
-        world.query_filtered::<&Transform, With<Mover>>().single(world).expect("it walks").translation;
+    let mover = world
+        .query_filtered::<&Transform, With<Mover>>()
+        .single(world)
+        .expect("one such entity exists")
+        .translation;
     println!("the mover is at {mover:.2}, the door is open by {open:.0}°");
     assert!(mover.z > 2.0 && open > 30.0);
 

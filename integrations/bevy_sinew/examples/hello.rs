@@ -27,7 +27,8 @@ pub fn plugin(app: &mut App) {
 
 fn height(app: &mut App) -> f32 {
     let world = app.world_mut();
-    let place = world.query_filtered::<&Transform, With<Falling>>().single(world).expect("it is there");
+    let place =
+        world.query_filtered::<&Transform, With<Falling>>().single(world).expect("one such entity exists");
     place.translation.y
 }
 

@@ -74,7 +74,8 @@ pub fn main() {
     println!("{seen:?}");
     assert_eq!(seen, [State::Animated, State::Flinching, State::Animated, State::Limp]);
     let world = app.world_mut();
-    let (place, state) = world.query::<(&Transform, &MoverState)>().single(world).expect("it is there");
+    let (place, state) =
+        world.query::<(&Transform, &MoverState)>().single(world).expect("one such entity exists");
     println!("the mover is at {:.2}", place.translation);
     assert!(place.translation.x > 9.0 && state.grounded);
 }

@@ -14,7 +14,7 @@
 //! let ball = app.world_mut().spawn(ball).id();
 //! # app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
 //! (0..180).for_each(|_| app.update());
-//! let height = app.world().get::<Transform>(ball).expect("it has one").translation.y;
+//! let height = app.world().get::<Transform>(ball).expect("the entity has this component").translation.y;
 //! assert!((height - 0.5).abs() < 0.01);
 //! ```
 //!

@@ -44,7 +44,7 @@ def show(arm):
 
 
 def _rest(arm, names):
-    """Of each bone: its length, the next bone above it that is among these, and its matrix at rest."""
+    """Returns for each bone its length, the next bone above it that is among these, and its matrix at rest."""
     found = {}
     for name in names:
         bone = arm.data.bones[name]

@@ -88,7 +88,7 @@ class SINEW_OT_forget(Sinew, bpy.types.Operator):
             bodies.show(arm)
 
 
-# Texts of Sinew's commands, and what they are in Blender.
+# Texts of Sinew's commands, and their replacements in Blender.
 HERE = (
     ("Give `unit_scale` or `height` in settings (`--unit`, `--height`) if it is another.", "Set Height in the ragdoll panel if it is another, and build again."),
     ("Give what sticks out a body (`--body`), say that it is no part of the body (`--ignore`), or", "Choose No body for bones of what sticks out, or"),

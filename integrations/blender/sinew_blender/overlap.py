@@ -1,4 +1,4 @@
-"""How deep a character is in the ground and in colliders when the bodies take over."""
+"""Measures how deep a character is in the ground and in colliders when the bodies take over."""
 
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
@@ -7,7 +7,7 @@ from . import overlay, stage
 from . import skeleton as sk
 from .skeleton import TO_Y
 
-# Smallest depth that is told, as a share of the height: feet of walks are in the ground by up to 5 %, and nothing pops.
+# Smallest reported depth, as a share of the height: feet of walks are up to 5 % in the ground without a visible jump.
 DEEP = 0.06
 # Number of spheres that stand for a capsule.
 SPHERES = 5
@@ -58,7 +58,7 @@ def _is_inside(tree, point):
 
 
 def _depth(spheres, vertices, corners):
-    """How deep the spheres are in a mesh."""
+    """Depth of the spheres in a mesh."""
     low, high = Vector(vertices.min(0)), Vector(vertices.max(0))
     near = [(c, r) for c, r in spheres if all(a - r < x < b + r for a, x, b in zip(low, c, high))]
     if not near:

@@ -21,7 +21,7 @@ STEPS = 24
 REACH = 0.5
 
 _handles = []
-# By the armature's name: its definition, and lines by bone.
+# Definition, and lines by bone, for each armature's name.
 _made = {}
 
 
@@ -79,7 +79,7 @@ def placed(pose):
 
 
 def to_world_of(definition):
-    """From the definition's character space (metres) to Blender's world."""
+    """Transform from the definition's character space (metres) to Blender's world."""
     unit = definition["unit_scale"]
     model = placed(definition["character_from_model"]).inverted()
     model.translation /= unit
@@ -94,7 +94,7 @@ def joint_frame(arm, definition, joint):
 
 
 def pieces(arm):
-    """By bone: lines of body, swing and twist in the bone's rest space, and position (rest space) and size (kg) of its mass."""
+    """Lines of body, swing and twist in the bone's rest space, and position (rest space) and size (kg) of its mass, by bone."""
     text = arm.sinew.definition
     kept = _made.get(arm.name)
     key = (text, arm.sinew.place)

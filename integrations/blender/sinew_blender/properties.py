@@ -159,7 +159,7 @@ POINTERS = (
 
 
 class filling:
-    """Values that are set within are no edits of the user."""
+    """Values assigned within this context do not count as edits of the user."""
 
     def __enter__(self):
         _filling[0] = True

@@ -10,7 +10,7 @@ from .skeleton import SinewError
 
 # Passes over all controls at a frame; each uses the current pose of its parents.
 PASSES = 2
-# Largest distance from the proxy that is no reason for a warning, metres.
+# Largest distance from the proxy without a warning, metres.
 CLOSE = 0.05
 # Roles of bodies whose control is called like the role, whatever the deform bone's name is.
 NAMED = {"neck", "head"}

@@ -14,7 +14,7 @@ from .skeleton import SinewError
 
 # States in which the user's animation alone sets the pose.
 OWN = {"animated"}
-# Begin of the reason for a fall whose energy grows.
+# Start of the reason for a fall whose energy grows.
 ENERGY = "energy gain"
 # Distance of a joint from its place in the rest pose at the hand-over that is worth a warning, metres.
 MOST_STRETCH = 0.03
@@ -142,7 +142,7 @@ def preparing(context, arms):
 
 
 def check_pose(scene, arms):
-    """Refuses what keeps an animation, or its keys, from their frames."""
+    """Raises an error if a setting moves an animation, or its keys, away from their frames."""
     if scene.render.frame_map_old != scene.render.frame_map_new:
         raise SinewError("Time Stretching is on: set Old and New to 100 (Output properties, Frame Range)")
     for arm in arms:
@@ -153,7 +153,7 @@ def check_pose(scene, arms):
 
 
 def check_return(settings, first, fps, given):
-    """Refuses a blend that begins before the character falls: it would move the hand-over to its begin."""
+    """Raises an error if a blend begins before the character falls: the hand-over would move to the start of the blend."""
     starts = [given["limp_at"]] if "limp_at" in given else []
     starts += [time for time, _, _ in given["hits"]]
     if not settings.use_return or not starts:
@@ -318,7 +318,7 @@ def falls_on(job):
 
 
 def judged(baked):
-    """Verdict and reasons of a fall. Wind adds energy: it is no reason there."""
+    """Verdict and reasons of a fall. Wind adds energy, so a gain of energy is no reason there."""
     if bpy.context.scene.sinew.wind.length == 0 or baked.verdict != "usable":
         return baked.verdict, list(baked.reasons)
     left = [reason for reason in baked.reasons if not reason.startswith(ENERGY)]

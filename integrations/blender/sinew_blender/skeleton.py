@@ -122,7 +122,7 @@ def _parents(arm, deform):
         return name == top
 
     def above(name):
-        # Upward from the ORG bone of the same name, as in Rigify, else from the bone's own parent.
+        # Searches upward from the ORG bone of the same name, as in Rigify, else from the bone's own parent.
         org = bones.get("ORG-" + plain(name))
         starts = [org.parent] if org is not None and org.parent is not None else []
         for at in (*starts, bones[name].parent):
@@ -259,7 +259,7 @@ def mesh_arrays(arm, skeleton, names):
 
 
 def unlike(name, names):
-    """A name that none of these is: a mesh may be called like a bone."""
+    """A name that is not among these, because a mesh may have the name of a bone."""
     while name in names:
         name += " mesh"
     return name

@@ -76,7 +76,7 @@ def at_frames(prefix, frames):
 
 
 def steps():
-    """The work, with pauses in seconds in which Blender goes on."""
+    """Steps of the test, with pauses in seconds in which Blender continues."""
     window, _, _ = view()
     rigs.empty_scene()
     yield 1.0

@@ -236,7 +236,7 @@ mod tests {
         let results = super::super::kept();
         charts(&results).expect("all scenes were measured");
         for name in SCENES {
-            let dots = dots(scene(&results, name).expect("it was measured"));
+            let dots = dots(scene(&results, name).expect("the scene was measured"));
             let rows: Vec<&str> =
                 page.lines().filter(|line| line.starts_with(&format!("| {name} "))).collect();
             for dot in &dots {

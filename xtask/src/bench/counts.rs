@@ -103,7 +103,7 @@ fn compiler() -> Result<String> {
 fn text(counts: &Counts) -> String {
     let mut text = format!("# {}\n", counts.compiler);
     for Count { kernel, instructions } in &counts.kernels {
-        writeln!(text, "{kernel} {instructions}").expect("a string takes everything");
+        writeln!(text, "{kernel} {instructions}").expect("writing to a string cannot fail");
     }
     text
 }
@@ -125,7 +125,7 @@ fn of<'a>(counts: &'a Counts, kernel: &str) -> Option<&'a Count> {
     counts.kernels.iter().find(|count| count.kernel == kernel)
 }
 
-/// Prints a table for people.
+/// Prints a readable table.
 fn print(found: &Counts, committed: Option<&Counts>) {
     println!("{:<32} {:>14} {:>9} {:>9}", "kernel", "instructions", "about µs", "change");
     for Count { kernel, instructions } in &found.kernels {
@@ -158,7 +158,10 @@ fn grouped(number: u64) -> String {
 /// Returns one line per kernel that is new, removed or has a different count.
 fn differences(committed: &Counts, found: &Counts) -> Vec<String> {
     if committed.compiler != found.compiler {
-        return vec![format!("{PATH} is of {}, this is {}", committed.compiler, found.compiler)];
+        return vec![format!(
+            "{PATH} was counted by {}, this compiler is {}",
+            committed.compiler, found.compiler
+        )];
     }
     let mut lines = Vec::new();
     for count in &found.kernels {
@@ -191,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn new_gone_and_costlier_kernels_are_reported() {
+    fn added_removed_and_costlier_kernels_are_reported() {
         let committed = parse("# rustc\na 1000\nb 1000\nc 1000\nd 1000\n").expect("well formed");
         assert_eq!(differences(&committed, &committed), [""; 0]);
         let found = parse("# rustc\na 1019\nb 1030\nc 900\ne 1\n").expect("well formed");
@@ -212,7 +215,9 @@ mod tests {
         let found = parse("# rustc 1.96.0 x86_64\na 2000\n").expect("well formed");
         assert_eq!(
             differences(&committed, &found),
-            ["bench/counts/baseline.txt is of rustc 1.95.0 x86_64, this is rustc 1.96.0 x86_64"]
+            [
+                "bench/counts/baseline.txt was counted by rustc 1.95.0 x86_64, this compiler is rustc 1.96.0 x86_64"
+            ]
         );
     }
 

@@ -223,7 +223,7 @@ mod tests {
         let quality = json!({ "limits": limits, "energy_start_j": 10.0, "energy_peak_j": 12.5 });
         let engine = engine("rapier", &[1.0], &quality);
         assert_eq!((LIMITS.of)(&engine), Some(5.0));
-        let worst = FIGURES.iter().find(|figure| figure.heading == "worst limit").expect("it is a column");
+        let worst = FIGURES.iter().find(|figure| figure.heading == "worst limit").expect("the column exists");
         assert_eq!((worst.of)(&engine), Some(0.4));
         assert_eq!(energy_gained(&engine), Some(2.5));
         assert_eq!((GAP.of)(&engine), None);

@@ -15,7 +15,7 @@ pub fn page(results: &Results, missing: &[&str]) -> String {
     let mut page =
         format!("{INTRODUCTION}\n{COUNTED}{} scenes: all of each in {DETAILS}.\n", results.scenes.len());
     let mut add = |heading: &str, text: &str| {
-        write!(page, "\n## {heading}\n\n{text}").expect("a string takes everything");
+        write!(page, "\n## {heading}\n\n{text}").expect("writing to a string cannot fail");
     };
     add("At a glance", &format!("{GLANCE}\n{}\n{LEGEND}{}", glance(results), gaps(missing)));
     add("Joints and stacks", &format!("{HOLD}\n{}", holds(results, HOLDS.iter().chain(STANDS))));
@@ -27,7 +27,7 @@ pub fn page(results: &Results, missing: &[&str]) -> String {
     add("Against the specification", &format!("{SPECIFICATION}\n{}", speeds(results)));
     let machine = results.machine.clone().unwrap_or_else(|| Machine::this().to_string());
     write!(page, "\n## Engines and machine\n\n{}\n{machine}", engines(results))
-        .expect("a string takes everything");
+        .expect("writing to a string cannot fail");
     page
 }
 
@@ -35,7 +35,7 @@ pub fn page(results: &Results, missing: &[&str]) -> String {
 pub fn scenes(results: &Results) -> String {
     let mut page = format!("# Benchmarks, scene by scene\n\n{SCENES}");
     for scene in &results.scenes {
-        write!(page, "\n## {}\n\n{}", scene.name, details(scene)).expect("a string takes everything");
+        write!(page, "\n## {}\n\n{}", scene.name, details(scene)).expect("writing to a string cannot fail");
     }
     page
 }
@@ -394,8 +394,9 @@ mod tests {
     /// The README gives the speeds of `docs/benchmarks.md`, which are by the mean step.
     #[test]
     fn readme_has_the_speeds_of_the_page() {
-        let read =
-            |name: &str| std::fs::read_to_string(crate::command::root().join(name)).expect("it is there");
+        let read = |name: &str| {
+            std::fs::read_to_string(crate::command::root().join(name)).expect("the file can be read")
+        };
         let (readme, page) = (read("README.md"), read("docs/benchmarks.md"));
         for &(scene, [before, after]) in CLAIMS {
             let row = page.lines().find(|line| line.starts_with(&format!("| {scene} "))).expect(scene);

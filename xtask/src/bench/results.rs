@@ -283,7 +283,7 @@ pub mod tests {
 
     #[test]
     fn times_are_medians_over_the_rounds() {
-        let times = engine("sinew", &[3.0, 1.0, 2.0], &Value::Null).times().expect("it ran");
+        let times = engine("sinew", &[3.0, 1.0, 2.0], &Value::Null).times().expect("the engine ran");
         assert_eq!(
             times,
             Times { mean: 2.0, best: 1.0, median: 1.0, p99: 4.0, worst: None, last_third: 2.0 }

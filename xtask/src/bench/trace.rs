@@ -1,4 +1,4 @@
-//! Times of the stages of a scene's step, and counts of their work, for people.
+//! Prints the times of the stages of a scene's step, and counts of their work.
 
 use super::figures::rounded;
 use super::peers;
@@ -51,10 +51,10 @@ fn shown(trace: &Value) -> String {
         let clock = trace["clock"].as_str().unwrap_or_default();
         let cost = us(&trace["clock_us"]);
         write!(text, "\n{table}\nBy the clock of the {clock}, whose reads are about {cost} µs of it.\n")
-            .expect("a string takes everything");
+            .expect("writing to a string cannot fail");
     }
     if trace["counts"].is_object() {
-        write!(text, "\n{}", counts(&trace["counts"])).expect("a string takes everything");
+        write!(text, "\n{}", counts(&trace["counts"])).expect("writing to a string cannot fail");
     }
     text
 }

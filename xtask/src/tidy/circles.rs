@@ -1,20 +1,20 @@
-//! Files of a crate that name each other in a circle, which a reader must understand together; and the number of files
+//! Dependency cycles among the files of a crate, which a reader must understand together; and the number of files
 //! in one folder.
 //!
-//! A file names another if one of its paths leads to an item of the other, through any re-exports; a re-export alone
-//! names nothing. Methods do not count, because tokens do not show their types.
+//! A file depends on another if one of its paths leads to an item of the other, through any re-exports; a re-export
+//! alone is no dependency. Methods do not count, because tokens do not show their types.
 
 use super::lexer::{self, Kind, Token};
 use super::rooms::is_test;
 use super::{File, Finding, Repo};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Limit on the files of one circle.
+/// Limit on the number of files of one dependency cycle.
 const CIRCLE_FILES_MAX: usize = 10;
-/// Limit on the number of files in `src/` itself, `lib.rs` included.
+/// Limit on the number of files directly in `src/`, `lib.rs` included.
 const FLAT_FILES_MAX: usize = 12;
 
-/// Checks the sizes of circles, and the number of files flat in a `src/`.
+/// Checks the sizes of dependency cycles, and the number of files directly in `src/`.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let crates: BTreeSet<&str> = repo.rust_files().filter_map(File::crate_of_source).collect();
     let mut findings = Vec::new();
@@ -47,7 +47,7 @@ pub struct House<'a> {
     pub files: usize,
     /// Number of files in `src/` itself.
     pub flat: usize,
-    /// Number of files of the largest circle; 1 if there is none.
+    /// Number of files of the largest dependency cycle; 1 if there is none.
     pub circle: usize,
 }
 
@@ -105,7 +105,7 @@ impl<'a> Source<'a> {
         Self { modules, places }
     }
 
-    /// Returns the modules that each module names.
+    /// Returns the modules on which each module depends.
     fn arrows(&self) -> Vec<BTreeSet<usize>> {
         let of = |at: usize| {
             let module = &self.modules[at];
@@ -271,7 +271,7 @@ fn import<'a>(tree: &[Token<'a>], prefix: &mut Vec<&'a str>, is_public: bool, im
     prefix.truncate(before);
 }
 
-/// Returns circles of more than one module: strongly connected components (Tarjan 1972).
+/// Returns dependency cycles of more than one module: strongly connected components (Tarjan 1972).
 fn circles(arrows: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
     let mut search =
         Search { arrows, order: vec![None; arrows.len()], low: vec![0; arrows.len()], ..Search::default() };
@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn planted_circles_are_found() {
+    fn planted_cycles_are_found() {
         let circle = |a: &str, b: &str| {
             planted(&[("lib.rs", "mod a; mod b; pub use b::B;"), ("a.rs", a), ("b.rs", b)])
         };
@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn a_large_circle_and_a_crowd_are_findings() {
+    fn large_cycle_and_crowded_folder_are_findings() {
         let ring = |count: usize| {
             let of = |k: usize| {
                 (

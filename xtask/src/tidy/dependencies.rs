@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unused_dependency_and_one_round_the_root_manifest_are_found() {
+    fn unused_dependency_and_one_outside_the_root_manifest_are_found() {
         assert_eq!(check_record("| `glam` | a |", &[]), ["Cargo.toml:4: no crate uses `glam`"]);
         assert_eq!(
             check_record("| `glam` | a |", &["glam", "rand"]),

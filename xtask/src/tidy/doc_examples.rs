@@ -38,7 +38,7 @@ fn example(file: &File, name: &str) -> Vec<Finding> {
     }
     for (index, line) in file.text.lines().enumerate() {
         if line.starts_with("use sinew::") && line != "use sinew::prelude::*;" {
-            findings.push(Finding::new(&file.path, index + 1, "what an example needs is in the prelude"));
+            findings.push(Finding::new(&file.path, index + 1, "an example uses only names of the prelude"));
         }
     }
     findings

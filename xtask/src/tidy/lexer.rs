@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn comments_vanish_and_strings_are_one_token() {
+    fn comments_are_skipped_and_strings_are_one_token() {
         check("a /* b /* c */ d */ e // f\ng", "a e g");
         check(r#"x("a \" b", 'c', '\'', b"d")"#, r#"x ( "a \" b" , 'c' , '\'' , b"d" )"#);
         check(r###"r#"a " b"# r"\" r#type"###, r###"r#"a " b"# r"\" r#type"###);

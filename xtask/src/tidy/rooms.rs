@@ -1,9 +1,9 @@
-//! Allowed uses between the rooms of a crate: its folders and files at the top of its `src/`, from the ground up.
+//! Allowed dependencies between the rooms of a crate, which are the folders and files directly in its `src/`.
 
 use super::lexer::{self, Kind, Token};
 use super::{File, Finding, Repo};
 
-/// Crates with rooms, each with its rooms from the ground up: a room may name those before it.
+/// Crates with rooms. The rooms of each crate are ordered from the lowest up: a room may depend on those before it.
 const ROOMS: &[(&str, &[&str])] = &[(
     "sinew_physics",
     &[
@@ -33,13 +33,13 @@ const ROOMS: &[(&str, &[&str])] = &[(
     ],
 )];
 
-/// Existing upward arrows, by file and room. The list may only shrink.
+/// Existing upward dependencies, by file and room. Entries may be removed but not added.
 const EXCEPTIONS: &[(&str, &str)] = &[
     // A step accesses the whole world, because the user's objects and the movers act on it within the step.
     ("crates/sinew_physics/src/step/mod.rs", "world"),
     ("crates/sinew_physics/src/step/mod.rs", "user_object"),
     ("crates/sinew_physics/src/step/mod.rs", "mover"),
-    // Interfaces for users take the world.
+    // The interface for users takes the world as an argument.
     ("crates/sinew_physics/src/user_object/mod.rs", "world"),
     // The world owns its movers, which act on a world.
     ("crates/sinew_physics/src/world/mod.rs", "mover"),
@@ -48,7 +48,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("crates/sinew_physics/src/world/explosions.rs", "query"),
 ];
 
-/// Limit on the upward arrows.
+/// Largest number of upward dependencies.
 const EXCEPTIONS_MAX: usize = 10;
 const _: () = assert!(EXCEPTIONS.len() <= EXCEPTIONS_MAX, "too many arrows back up");
 
@@ -132,9 +132,9 @@ fn exports(lib: &File) -> Vec<(&str, &str)> {
     exports
 }
 
-/// Returns the names right below `crate` that a file uses, with the lines.
+/// Returns the names directly below `crate` that a file uses, with their lines.
 fn named(file: &File) -> Vec<(&str, usize)> {
-    // Removes as many `super` as lead to the top.
+    // Removes the `super` words that lead to the root of the crate.
     let inside = file.path.splitn(4, '/').nth(3).unwrap_or_default();
     let depth = inside.trim_end_matches("/mod.rs").matches('/').count() + 1;
     let tokens = file.tokens_without_tests();
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn a_planted_arrow_back_up_is_found() {
+    fn planted_upward_dependency_is_found() {
         let up = "crates/sinew_math/src/hall/door.rs:1: `hall` must not name `attic`, which stands above it";
         for code in [
             "use crate::attic::Beam;",
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn arrows_down_and_of_tests_are_free() {
+    fn downward_and_test_dependencies_are_allowed() {
         for code in [
             "use crate::cellar::{Wine, attic};\nuse super::attic;",
             "#[cfg(test)]\nmod tests { use crate::attic; }",
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn an_exception_excuses_and_must_be_needed() {
+    fn exception_is_accepted_only_while_needed() {
         let path = "crates/sinew_math/src/hall/door.rs";
         assert_eq!(check_files(&[(path, "use crate::attic;")], &[(path, "attic")]), [""; 0]);
         assert_eq!(check_files(&[(path, "")], &[(path, "attic")]).len(), 1);

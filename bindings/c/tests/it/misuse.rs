@@ -202,7 +202,7 @@ fn errors_of_files_name_the_file_and_the_place() {
     let mut ragdoll = null_mut();
     let folder = std::env::temp_dir();
     let broken = folder.join(format!("sinew-c-{}.glb", std::process::id()));
-    std::fs::write(&broken, b"glTF but not for long").expect("it is written");
+    std::fs::write(&broken, b"glTF but not for long").expect("the file can be written");
     let path = |path: &std::path::Path| CString::new(path.display().to_string()).expect("no zeros");
     // SAFETY: text and buffer are valid.
     unsafe {
@@ -215,7 +215,7 @@ fn errors_of_files_name_the_file_and_the_place() {
         assert_eq!(sinew_ragdoll_load(c"\xff".as_ptr(), &mut ragdoll), SinewStatus::BadArgument);
         assert!(def.is_null() && ragdoll.is_null());
     }
-    std::fs::remove_file(&broken).expect("it is there");
+    std::fs::remove_file(&broken).expect("the file can be removed");
 }
 
 #[test]

@@ -141,11 +141,11 @@ class CharacterFile:
 
     @property
     def joints(self) -> list[str]:
-        """Names of its joints."""
+        """Names of the joints."""
 
     @property
     def clips(self) -> list[str]:
-        """Names of its clips."""
+        """Names of the clips."""
 
     @property
     def roles(self) -> dict[str, str]:
@@ -164,7 +164,7 @@ class CharacterFile:
         sex: Literal["male", "female"] = "male",
         limits: Literal["anatomy", "clips"] = "anatomy",
     ) -> Ragdoll:
-        """Builds its ragdoll; mass in kg, height in metres."""
+        """Builds the ragdoll; mass in kg, height in metres."""
 
     def character(
         self,
@@ -258,7 +258,7 @@ class Ragdoll:
         """Findings of the doctor."""
 
     def drop_test(self) -> DropReport:
-        """Drops it and throws it at a wall."""
+        """Drops the ragdoll and throws it at a wall."""
 
     def to_json(self) -> str:
         """The definition as JSON, as `sinew ragdoll build` writes it."""
@@ -280,11 +280,11 @@ class Model:
 
     @property
     def bodies(self) -> list[str]:
-        """Names of its bodies."""
+        """Names of the bodies."""
 
     @property
     def joints(self) -> list[str]:
-        """Names of its joints."""
+        """Names of the joints."""
 
     @property
     def notes(self) -> list[str]:
@@ -301,7 +301,7 @@ class Character:
 
     @property
     def joints(self) -> list[str]:
-        """Names of its joints, in the order of pose arrays; joints added by Sinew come last."""
+        """Names of the joints, in the order of pose arrays; joints added by Sinew come last."""
 
     @property
     def place_in_file(self) -> _Floats:
@@ -313,7 +313,7 @@ class Character:
 
     @property
     def clips(self) -> list[str]:
-        """Names of the clips that it knows: the file's, and Sinew's get-ups."""
+        """Names of the clips: the file's, and Sinew's get-ups."""
 
     def scaled(self, factor: float) -> Character:
         """A copy of another size: a child, a giant."""
@@ -378,7 +378,7 @@ class Actor:
         phase: float = 0.0,
         name: str = "sinew",
     ) -> Actor:
-        """A hit is a time in seconds, a body by role or joint, and an impulse in N·s; with `flinch` weak ones only let it flinch. `drives` change what moves its bones over time. At `return_at` seconds its clip alone has the pose again; the simulated pose dies away in `return_seconds` before. With `topple` a single character that goes limp and stays upright is pushed over; by default where nothing else is done to it. `topple_velocity`: the velocity, m/s (3,), that its highest point gets at `limp_at` seconds."""
+        """A hit is a time in seconds, a body by role or joint, and an impulse in N·s; with `flinch` weak ones only cause a flinch. `drives` change what moves its bones over time. At `return_at` seconds its clip alone has the pose again; the simulated pose dies away in `return_seconds` before. With `topple` a single character that goes limp and stays upright is pushed over; by default where nothing else is done to it. `topple_velocity`: the velocity, m/s (3,), that its highest point gets at `limp_at` seconds."""
 
 @final
 class Drive:
@@ -411,11 +411,11 @@ class Drive:
 
     @property
     def bone(self) -> str | None:
-        """Bone that it drives; None: all."""
+        """Driven bone; None: all."""
 
     @property
     def below(self) -> bool:
-        """True if it also drives everything below the bone."""
+        """True if everything below the bone is driven, too."""
 
     @property
     def half_life(self) -> float:
@@ -541,7 +541,7 @@ class LiveParticles:
         """Moves a particle, metres (3,)."""
 
     def remove(self) -> None:
-        """Removes them from the world."""
+        """Removes the particles from the world."""
 
 @final
 class Mover:
@@ -549,37 +549,37 @@ class Mover:
 
     @property
     def position(self) -> _Floats:
-        """Its lowest point, metres: (3,)."""
+        """Lowest point, metres: (3,)."""
 
     @property
     def velocity(self) -> _Floats:
-        """Its velocity, m/s: (3,)."""
+        """Velocity, m/s: (3,)."""
 
     @property
     def grounded(self) -> bool:
-        """True if it stands on the ground."""
+        """True if the mover stands on the ground."""
 
     @property
     def ground(self) -> int | None:
-        """Id of the body that it stands on; None in the air and on another mover."""
+        """Id of the body below the mover; None in the air and on another mover."""
 
     def walk(self, velocity: ArrayLike) -> None:
-        """Sets its walking velocity relative to the ground, m/s (3,)."""
+        """Sets the walking velocity relative to the ground, m/s (3,)."""
 
     def jump(self, speed: float = 3.5) -> None:
-        """Makes it jump in the next step with an upward speed, m/s, if it is on the ground."""
+        """Jumps from the ground in the next step, with an upward speed, m/s."""
 
     def launch(self, velocity: ArrayLike) -> None:
-        """Throws it with a velocity, m/s (3,)."""
+        """Throws the mover with a velocity, m/s (3,)."""
 
     def teleport(self, position: ArrayLike) -> None:
-        """Teleports its lowest point, metres (3,)."""
+        """Teleports the lowest point, metres (3,)."""
 
     def set_height(self, height: float) -> bool:
-        """Changes its height, metres; False if there is no space to grow."""
+        """Changes the height, metres; False if there is no space to grow."""
 
     def remove(self) -> None:
-        """Removes it from the world."""
+        """Removes the mover from the world."""
 
 @final
 class Collider:
@@ -629,7 +629,7 @@ class Collider:
 
 @final
 class Bake:
-    """Outcome of a bake: poses, events, figures, and a clip."""
+    """Result of a bake: poses, events, metrics, and a clip."""
 
     @property
     def times(self) -> _Floats:
@@ -665,7 +665,7 @@ class Bake:
 
     @property
     def quality(self) -> FallQuality:
-        """Figures of the fall."""
+        """Metrics of the fall."""
 
     @property
     def verdict(self) -> str:
@@ -706,7 +706,7 @@ class Bake:
         """The character, its motion and its ragdoll as USD text (.usda), and a sentence on each loss."""
 
     def save(self, path: _Path, *, mesh: bool = True) -> None:
-        """Writes that file atomically."""
+        """Writes the file of `glb` atomically."""
 
 @final
 class World:
@@ -755,7 +755,7 @@ class World:
     def add_character(
         self, character: Character, *, pose: ArrayLike | None = None, phase: float = 0.0
     ) -> LiveCharacter:
-        """Adds a character, standing at a pose (7,), `phase` seconds into its clip; it follows every step."""
+        """Adds a character, standing at a pose (7,), `phase` seconds into its clip; updated after every step."""
 
     def add_field(self, field: Field) -> int:
         """Adds a field and returns its id."""
@@ -893,7 +893,7 @@ class World:
 
 @final
 class LiveCharacter:
-    """Character in a world; it follows every step."""
+    """Character in a world, updated after every step."""
 
     @property
     def state(self) -> str:
@@ -931,7 +931,7 @@ class LiveCharacter:
 
     @property
     def stumbles(self) -> bool:
-        """True if it is powered and takes steps to catch a push."""
+        """True if the character is powered and takes steps to catch a push."""
 
     @property
     def level_of_detail(self) -> str:
@@ -939,18 +939,18 @@ class LiveCharacter:
 
     @property
     def gets_up(self) -> bool:
-        """True if it gets up once it lies still."""
+        """True if the character gets up after lying still."""
 
     def set_gets_up(self, gets_up: bool) -> None:
-        """Sets whether it gets up once it lies still."""
+        """Sets whether the character gets up after lying still."""
 
     @property
     def mover(self) -> Mover | None:
-        """Its mover; None while it has none."""
+        """Mover of the character, or None."""
 
     @property
     def garments(self) -> list[LiveParticles]:
-        """Particles of its garments."""
+        """Particles of the garments."""
 
     @property
     def lost_joints(self) -> list[str]:
@@ -961,25 +961,25 @@ class LiveCharacter:
 
     @property
     def bodies(self) -> _Ids:
-        """Ids of its bodies, in the order of `Character.roles`; empty while it has none in the world."""
+        """Ids of the character's bodies, in the order of `Character.roles`; empty while none are in the world."""
 
     def set_move(self, velocity: ArrayLike | None) -> None:
-        """Sets its velocity over the ground, m/s (3,); None: it follows its clips."""
+        """Sets the velocity over the ground, m/s (3,); None: that of the clips."""
 
     def face(self, direction: ArrayLike) -> None:
-        """Makes it turn to face a direction (3,)."""
+        """Turns the character to face a direction (3,)."""
 
     def jump(self) -> None:
-        """Makes it jump in the next step, if it is on the ground."""
+        """Jumps in the next step, if the character is on the ground."""
 
     def hit(self, bone: str, impulse: ArrayLike) -> float:
         """Hits a body, by role or joint, with an impulse in N·s (3,); returns its work, J."""
 
     def hit_at(self, body: int, point: ArrayLike, impulse: ArrayLike) -> float | None:
-        """Hits one of its bodies, by id, at a point of the world (3,), with an impulse in N·s (3,); returns its work, J, or None if the body is not its own."""
+        """Hits one of the character's bodies, by id, at a point of the world (3,), with an impulse in N·s (3,); returns its work, J, or None if the body is not the character's."""
 
     def go_limp(self) -> None:
-        """Makes it limp."""
+        """Makes the character limp."""
 
     def set_preset(self, preset: Literal["animated", "flinching", "powered", "limp"]) -> None:
         """Changes the drive of the whole character."""
@@ -988,10 +988,10 @@ class LiveCharacter:
         """Changes the drive of a part from now on; the drive's time is ignored."""
 
     def return_to_clip(self, pose: ArrayLike, *, phase: float = 0.0, seconds: float = 0.5) -> None:
-        """Blends it back to its clip at `phase` seconds, at a pose (7,), within `seconds`."""
+        """Blends the character back to its clip at `phase` seconds, at a pose (7,), within `seconds`."""
 
     def teleport(self, pose: ArrayLike) -> None:
-        """Teleports it to a pose (7,)."""
+        """Teleports the character to a pose (7,)."""
 
     def clear(self) -> bool:
         """Moves a limp character out of static shapes that it is deep in; False if it is in none."""
@@ -1003,26 +1003,26 @@ class LiveCharacter:
         """Makes a bone grab a body within reach (m), also one of another character, with a force in N. Returns the joint's id, or None."""
 
     def release(self, body: int) -> bool:
-        """Releases a held body; False if it does not hold it."""
+        """Releases a held body; False if it was not held."""
 
     @property
     def held(self) -> _Ids:
-        """Ids of bodies that it holds."""
+        """Ids of held bodies."""
 
     def detach(self, bone: str) -> _Ids | None:
         """Detaches a limb with everything below it; returns the ids of its bodies, or None if it was detached before."""
 
     def set_level_of_detail(self, detail: Literal["full", "hit_bodies", "keyed", "frozen"]) -> None:
-        """Sets its level of detail."""
+        """Sets the level of detail."""
 
     def reset_springs(self) -> None:
-        """Restarts its springs at rest."""
+        """Restarts the springs at rest."""
 
     def reset_garments(self) -> None:
-        """Restarts its garments at rest."""
+        """Restarts the garments at rest."""
 
     def despawn(self) -> None:
-        """Removes it from the world."""
+        """Removes the character from the world."""
 
 
 @final
@@ -1054,7 +1054,7 @@ class BatchWorlds:
 
     @property
     def threads(self) -> int:
-        """Number of threads that step them."""
+        """Number of threads that step the worlds."""
 
     def step(self, count: int = 1) -> None:
         """Takes `count` steps in each world, without the GIL."""
@@ -1066,7 +1066,7 @@ class BatchWorlds:
         poses: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
     ) -> None:
-        """Resets the named worlds or all to their beginning, with initial `poses` (worlds, bodies, 7) and `velocities` (worlds, bodies, 6) if given."""
+        """Resets the given worlds, or all, to their initial states, with initial `poses` (worlds, bodies, 7) and `velocities` (worlds, bodies, 6) if given."""
 
     def push(self, body: int, impulses: ArrayLike) -> None:
         """Applies an impulse to a body of each world, N·s: (worlds, 3)."""
@@ -1086,7 +1086,7 @@ class BatchWorlds:
         """Rotations of all joints, scaled axes in radians: (worlds, joints, 3)."""
 
     def joint_gaps(self) -> _Floats:
-        """Widest gap of a joint in each world, metres: (worlds,)."""
+        """Largest gap of a joint in each world, metres: (worlds,)."""
 
     def depths(self) -> _Floats:
         """Deepest overlap in each world, metres: (worlds,)."""
@@ -1098,5 +1098,5 @@ class BatchWorlds:
         """Points of contact of one world."""
 
     def carried(self, motions: ArrayLike) -> _Floats:
-        """Poses of the figure at its beginning, moved by a pose for each world (worlds, 7): (worlds, bodies, 7), for `reset`."""
+        """Initial poses of the figure, moved by a pose for each world (worlds, 7): (worlds, bodies, 7), for `reset`."""
 

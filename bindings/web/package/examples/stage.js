@@ -50,7 +50,7 @@ export async function stage({ eye = [4, 2.2, 5], target = [0, 0.8, 0] } = {}) {
   return { physics, scene, camera, controls, renderer, drag, run };
 }
 
-// The file of `?file=`, else the mannequin: its bytes, and the result of three's loader.
+// Loads the file of `?file=`, else the mannequin; returns its bytes, and the result of three's loader.
 export async function hero() {
   const file = new URLSearchParams(location.search).get('file');
   const bytes = file ? new Uint8Array(await (await fetch(file)).arrayBuffer()) : mannequinGlb();

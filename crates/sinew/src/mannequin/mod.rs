@@ -49,7 +49,7 @@ pub struct Motions {
     pub get_up_prone: usize,
 }
 
-/// Generates the mannequin. The same bits on every target.
+/// Generates the mannequin, with the same bits on every target.
 pub fn mannequin() -> Mannequin {
     let mut rig = skeleton::skeleton();
     rig.meshes.push(body::mesh());

@@ -8,8 +8,8 @@ use sinew::ragdoll::{AfterSettling, Locomotion, Settings};
 use sinew::{LoadedCharacter, character_of, load_character};
 
 fn read(rig: &Rig, clips: &[Clip]) -> Document {
-    let bytes = write_gltf(rig, clips).expect("it can be written");
-    read_gltf(&bytes, ReadOptions::default(), &mut no_files).expect("it can be read")
+    let bytes = write_gltf(rig, clips).expect("the rig can be written as glTF");
+    read_gltf(&bytes, ReadOptions::default(), &mut no_files).expect("the glTF can be read")
 }
 
 fn loaded(rig: &Rig, clips: &[Clip]) -> LoadedCharacter {
@@ -17,7 +17,7 @@ fn loaded(rig: &Rig, clips: &[Clip]) -> LoadedCharacter {
 }
 
 #[test]
-fn the_clips_of_a_file_are_recognised() {
+fn clips_of_a_file_are_recognised() {
     let Mannequin { rig, clips, motions } = mannequin();
     // Another order of the clips, as files may have it.
     let order = [motions.get_up_prone, motions.idle, motions.walk, motions.get_up_supine];
@@ -34,7 +34,7 @@ fn the_clips_of_a_file_are_recognised() {
 }
 
 #[test]
-fn what_a_file_lacks_is_built_in_and_said() {
+fn missing_motions_are_built_in_and_noted() {
     let hero = loaded(&mannequin().rig, &[]);
     let own = hero.def.motions();
     assert!(own.looped.is_some() && own.idle.is_some() && own.get_ups.len() == 2);
@@ -45,7 +45,7 @@ fn what_a_file_lacks_is_built_in_and_said() {
 }
 
 #[test]
-fn the_shortest_name_is_the_idle_and_a_held_pose_no_walk() {
+fn shortest_idle_name_wins_and_a_held_pose_is_not_a_walk() {
     let Mannequin { rig, clips, motions } = mannequin();
     let named = |clip: usize, name: &str| Clip { name: name.to_owned(), ..clips[clip].clone() };
     let mut held = named(motions.walk, "Walk_Pose");
@@ -61,7 +61,7 @@ fn the_shortest_name_is_the_idle_and_a_held_pose_no_walk() {
 }
 
 #[test]
-fn a_run_is_blended_with_the_walk() {
+fn run_is_blended_with_the_walk() {
     let Mannequin { rig, clips, motions } = mannequin();
     let run = sinew::mannequin::drills::running().clip;
     let named = |clip: &Clip, name: &str| Clip { name: name.to_owned(), ..clip.clone() };
@@ -83,31 +83,32 @@ fn a_run_is_blended_with_the_walk() {
 }
 
 #[test]
-fn a_file_without_a_skin_is_refused_by_name() {
+fn file_without_a_skin_is_rejected_by_name() {
     let rig = Rig { meshes: Vec::new(), ..mannequin().rig };
     let document = read(&rig, &[]);
     assert_eq!(document.container, Container::Glb);
-    let error = character_of(document, "crate.glb", &Settings::default()).expect_err("it has no skin");
+    let error = character_of(document, "crate.glb", &Settings::default()).expect_err("the file has no skin");
     assert!(error.to_string().starts_with("crate.glb: "), "{error}");
     let error = load_character("no/such.glb").expect_err("there is no such file");
     assert!(error.to_string().starts_with("no/such.glb: "), "{error}");
 }
 
 #[test]
-fn the_settings_beside_a_file_are_followed() {
+fn settings_beside_a_file_are_applied() {
     let path = std::env::temp_dir().join(format!("sinew_loaded_{}.glb", std::process::id()));
     let own = mannequin();
-    std::fs::write(&path, write_gltf(&own.rig, &own.clips).expect("it can be written")).expect("a file");
+    std::fs::write(&path, write_gltf(&own.rig, &own.clips).expect("the rig can be written as glTF"))
+        .expect("a file");
     let beside = sinew::formats::settings_path(&path);
     std::fs::write(&beside, r#"{"sinew": "ragdoll-settings", "version": 1, "mass": 55}"#)
-        .expect("it can be written");
+        .expect("the file can be written");
     let hero = load_character(&path).expect("a character");
-    std::fs::remove_file(&beside).expect("it is there");
-    std::fs::remove_file(&path).expect("it is there");
+    std::fs::remove_file(&beside).expect("the file can be removed");
+    std::fs::remove_file(&path).expect("the file can be removed");
     assert!((hero.def.ragdoll.total_mass - 55.0).abs() < 1e-3, "{} kg", hero.def.ragdoll.total_mass);
 }
 
 #[test]
-fn the_example_walks_falls_and_gets_up() {
+fn example_character_walks_falls_and_gets_up() {
     your_character::run(your_character::mannequin());
 }

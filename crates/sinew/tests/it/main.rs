@@ -52,97 +52,97 @@ mod pictures;
 mod prelude;
 
 #[test]
-fn the_flock_flies() {
+fn flock_forms_and_stays_in_its_aviary() {
     flock::main();
 }
 
 #[test]
-fn the_clock_keeps_time() {
+fn clock_has_the_period_of_theory() {
     pendulum_clock::main();
 }
 
 #[test]
-fn the_questions_are_answered() {
+fn each_query_gives_its_answer() {
     probes::main();
 }
 
 #[test]
-fn the_player_walks_rides_and_jumps() {
+fn player_walks_rides_and_jumps() {
     player::main();
 }
 
 #[test]
-fn the_walker_goes_up_stairs_and_down_a_ramp() {
+fn walker_climbs_stairs_and_descends_a_ramp() {
     stairs::main();
 }
 
 #[test]
-fn the_target_flinches_and_falls() {
+fn target_flinches_and_falls() {
     shooter::main();
 }
 
 #[test]
-fn the_active_ragdoll_stands_a_push() {
+fn active_ragdoll_recovers_from_a_light_push() {
     active_ragdoll::main();
 }
 
 #[test]
-fn the_walker_takes_its_cape_through_the_door() {
+fn walker_with_a_cape_passes_the_door() {
     door_and_cape::main();
 }
 
 #[test]
-fn the_fight_is_the_same_with_news_that_come_late() {
+fn fight_has_the_same_bits_with_late_inputs() {
     rollback_fight::main();
 }
 
 #[test]
-fn the_walker_is_struck_and_gets_up() {
+fn struck_walker_falls_and_gets_up() {
     character_get_up::main();
 }
 
 #[test]
-fn the_door_opens_and_closes() {
+fn door_opens_and_closes() {
     door::main();
 }
 
 #[test]
-fn everything_tells_of_the_ball_once() {
+fn sensor_and_wall_report_one_event_each() {
     events::main();
 }
 
 #[test]
-fn the_box_falls_and_sleeps() {
+fn box_falls_and_sleeps() {
     hello_box::main();
 }
 
 #[test]
-fn the_ball_rolls_into_the_bowl() {
+fn stone_rolls_into_the_bowl() {
     level::main();
 }
 
 #[test]
-fn the_ragdoll_falls_and_holds_together() {
+fn ragdoll_falls_and_its_joints_hold() {
     ragdoll_from_file::main();
 }
 
 #[test]
-fn time_goes_the_same_way_again() {
+fn rewound_world_takes_the_same_steps() {
     rewind::main();
 }
 
 #[test]
-fn the_load_swings_on_its_rope() {
+fn load_swings_on_its_rope() {
     rope::main();
 }
 
 #[test]
-fn the_tower_stands_and_falls() {
+fn tower_stands_until_it_is_hit() {
     stack::main();
 }
 
 #[test]
-fn threads_change_no_bit() {
+fn thread_count_does_not_change_the_bits() {
     threads::main();
 }
 

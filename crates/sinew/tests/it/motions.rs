@@ -82,7 +82,7 @@ fn worst_stance(def: &CharacterDef, analysis: &RigAnalysis, fit: &Retargeted) ->
 }
 
 #[test]
-fn feet_stand_on_the_floor_and_nothing_of_the_trunk_is_in_it() {
+fn feet_stand_on_the_floor_and_the_trunk_is_above_it() {
     let all = humanoids();
     for (name, def, analysis) in &all {
         let motions = builtin_motions(def, analysis).unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -108,7 +108,7 @@ fn feet_stand_on_the_floor_and_nothing_of_the_trunk_is_in_it() {
 }
 
 #[test]
-fn a_cycle_closes_and_goes_at_the_pace_of_the_legs() {
+fn cycle_closes_and_its_speed_matches_the_legs() {
     let (def, analysis) = character(mannequin().rig);
     let motions = builtin_motions(&def, &analysis).expect("a human");
     assert!((motions.walk_speed - WALK_SPEED).abs() < 1e-3, "{} m/s", motions.walk_speed);
@@ -145,7 +145,7 @@ fn only_what_is_missing_is_filled_in() {
 
 /// A joint that a get-up does not animate keeps its pose of the looped clip, not the rig's rest pose.
 #[test]
-fn what_a_get_up_says_nothing_of_stays_as_in_the_loop() {
+fn joints_without_get_up_channels_keep_the_loop_pose() {
     let mannequin = mannequin();
     let mut rig = mannequin.rig.clone();
     let hand = rig.joints.iter().position(|joint| joint.name == "rightHand").expect("a hand");
@@ -234,7 +234,7 @@ fn block(middle: Vec3, half: Vec3, slot: usize) -> Primitive {
 fn with_box(mut rig: Rig, role: Role, off: Vec3, half: Vec3) -> Rig {
     let analysis = analyze(&rig).expect("a skin");
     let joint = analysis.joint_with(role).expect("the role");
-    let slot = rig.skins[0].joints.iter().position(|&at| at == joint).expect("it moves skin");
+    let slot = rig.skins[0].joints.iter().position(|&at| at == joint).expect("the joint moves skin");
     let middle = analysis.bind_model[joint].translation + off;
     let part = block(middle, half, slot);
     let joint = rig.meshes[0].joint;
@@ -257,7 +257,7 @@ fn flat(mut rig: Rig) -> Rig {
 
 /// With a staff as long as its bearer, across the palm, the hand turns about its wrist, and no get-up is lost.
 #[test]
-fn a_human_with_a_staff_gets_up() {
+fn human_with_a_staff_gets_up() {
     let hand = Role::Hand(Side::Right);
     let staff = with_box(mannequin().rig, hand, Vec3::Y * 0.1, Vec3::new(0.02, 0.85, 0.02));
     for (rig, what) in [(staff.clone(), "a tree of joints"), (flat(staff), "joints without parents")] {
@@ -359,7 +359,7 @@ fn large_shapes_do_not_raise_a_get_up() {
         for frame in 0..fit.take.frames() {
             meter.stand(Stage::Rising, fit.take.pose(frame), &to_world, 0.0);
         }
-        let above = meter.figures().rising_above_m.expect("it was measured");
+        let above = meter.figures().rising_above_m.expect("the height was measured");
         assert!(above < 0.05 * def.ragdoll.height, "it is {above} m above the floor");
     }
 }

@@ -75,7 +75,7 @@ fn fall() -> String {
     let mut drawing = Drawing::new("A walking figure is hit, falls and lies", 9.1, 2.0);
     for step in 0..=180 {
         if step == 60 {
-            let chest = def.body_named("chest").expect("it has a chest");
+            let chest = def.body_named("chest").expect("the character has this body");
             hero.hit(&mut world, chest, Vec3::new(20.0, 0.0, -80.0));
         }
         world.step();
@@ -97,9 +97,9 @@ fn figure(drawing: &mut Drawing, def: &CharacterDef, model: &[Affine], way: Vec3
         [place.z, place.y]
     };
     let joints = def.rig.joints.iter().enumerate().filter(|(_, joint)| joint.parent.is_some_and(|of| of > 0));
-    let bones = joints.map(|(joint, of)| [at(of.parent.expect("it has one")), at(joint)]);
+    let bones = joints.map(|(joint, of)| [at(of.parent.expect("the joint has a parent")), at(joint)]);
     drawing.lines(0.07, 0.75, bones);
-    let head = def.rig.joints.iter().position(|joint| joint.name == "head").expect("it has a head");
+    let head = def.rig.joints.iter().position(|joint| joint.name == "head").expect("the rig has this joint");
     let middle = model[head].point(Vec3::Y * 0.1) + way;
     drawing.ball([middle.z, middle.y], 0.11);
 }
@@ -120,7 +120,7 @@ fn ragdoll() -> String {
     let mut model = Vec::new();
     local_to_model(&def.rig, def.rest(), &def.mapping().character_from_model(), &mut model);
     let joints = def.rig.joints.iter().enumerate().filter(|(_, joint)| joint.parent.is_some_and(|of| of > 0));
-    let bones = joints.map(|(joint, of)| [of.parent.expect("it has one"), joint]);
+    let bones = joints.map(|(joint, of)| [of.parent.expect("the joint has a parent"), joint]);
     let bones = bones.map(|bone| bone.map(|joint| right(model[joint].translation)));
     drawing.lines(0.03, 1.0, bones);
     drawing.end()
@@ -139,14 +139,14 @@ impl DebugDraw for Wires {
 }
 
 #[test]
-fn pictures_are_those_that_the_library_draws() {
+fn saved_pictures_match_drawn_ones() {
     let pictures = [("doc/fall.svg", fall()), ("../sinew_ragdoll/doc/ragdoll.svg", ragdoll())];
     for (path, due) in pictures {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
         if std::env::var_os("SINEW_BLESS").is_some() {
-            std::fs::write(&path, &due).expect("it can be written");
+            std::fs::write(&path, &due).expect("the file can be written");
         }
-        let is = std::fs::read_to_string(&path).expect("it is there");
+        let is = std::fs::read_to_string(&path).expect("the file can be read");
         assert!(is == due, "{}: bless it, and look at it", path.display());
         assert!(
             due.len() < 40_000 && !due.contains("\n\n"),

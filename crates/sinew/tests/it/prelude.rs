@@ -3,14 +3,14 @@
 use sinew::prelude::*;
 
 #[test]
-fn velocities_are_made_of_one_part() {
+fn velocities_are_built_from_one_part() {
     let way = Vec3::new(1.0, 2.0, 3.0);
     assert_eq!(Velocity::linear(way), Velocity { linear: way, angular: Vec3::ZERO });
     assert_eq!(Velocity::angular(way), Velocity { linear: Vec3::ZERO, angular: way });
 }
 
 #[test]
-fn a_transform_times_a_point_is_its_image() {
+fn transform_times_a_point_is_the_transformed_point() {
     let turn = Rotation::from_axis_angle(Vec3::Y, 0.7);
     let (place, point) = (Transform::new(Vec3::new(1.0, 0.0, -2.0), turn), Vec3::new(0.5, 1.0, 2.0));
     assert_eq!(place * point, place.point(point));
@@ -18,12 +18,12 @@ fn a_transform_times_a_point_is_its_image() {
 }
 
 #[test]
-fn a_hill_of_few_words_carries_a_ball() {
+fn height_field_of_few_samples_carries_a_ball() {
     let hill =
         HeightFieldDef::from_fn(5, 3, 2.0, |column, row| if (column, row) == (2, 1) { 1.0 } else { 0.0 });
     assert_eq!((hill.heights.len(), hill.heights[5 + 2], hill.spacing), (15, 1.0, [2.0, 2.0]));
     assert_eq!(hill, HeightFieldDef::new(5, 3, 2.0, hill.heights.clone()));
-    let field = HeightField::new(hill).expect("it is one");
+    let field = HeightField::new(hill).expect("the samples are a valid height field");
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HeightField(field.into())));
     let ball = BodyDef::dynamic(Shape::Sphere { radius: 0.25 }).at(Vec3::new(1.0, 2.0, 1.0));
@@ -31,7 +31,7 @@ fn a_hill_of_few_words_carries_a_ball() {
     for _ in 0..120 {
         world.step();
     }
-    assert!(world.transform(ball).translation.y > 0.2, "it lies on the field");
+    assert!(world.transform(ball).translation.y > 0.2, "the ball lies on the field");
 }
 
 /// Checks that the prelude alone has every name used here.

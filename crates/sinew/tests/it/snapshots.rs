@@ -37,8 +37,10 @@ impl Match {
 
     fn load(&mut self, snapshot: &Snapshot) {
         let mut bytes = Reader::new(snapshot.as_bytes());
-        self.world.load(&mut bytes).expect("it was saved here");
-        self.characters.iter_mut().for_each(|one| one.load(&mut bytes).expect("it was saved here"));
+        self.world.load(&mut bytes).expect("the saved state can be loaded");
+        self.characters
+            .iter_mut()
+            .for_each(|one| one.load(&mut bytes).expect("the saved state can be loaded"));
     }
 }
 
@@ -139,7 +141,7 @@ fn table(times: usize, counts: &[usize]) {
 }
 
 #[test]
-fn deltas_of_snapshots_bring_them_back() {
+fn deltas_restore_their_snapshots() {
     table(1, &[2]);
 }
 

@@ -24,7 +24,7 @@ pub struct JointExcess {
 pub fn project_limits(take: &mut Take, limits: &[LearnedLimit]) -> Vec<JointExcess> {
     let mut report = Vec::new();
     for limit in limits {
-        assert!(limit.joint < take.joints, "limits of this rig");
+        assert!(limit.joint < take.joints, "the limits must fit the rig");
         let mut excess = JointExcess { joint: limit.joint, frames: 0, largest: 0.0 };
         for frame in 0..take.frames() {
             let local = &mut take.pose_mut(frame)[limit.joint];

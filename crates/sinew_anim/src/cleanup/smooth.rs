@@ -1,4 +1,4 @@
-//! Removes trembling.
+//! Smooths a take to remove trembling.
 
 use crate::clip::take::Take;
 use crate::rig::LocalTransform;

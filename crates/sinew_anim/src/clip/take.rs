@@ -17,7 +17,7 @@ pub struct Take {
 }
 
 impl Take {
-    /// Largest number of frames of a take (hours): bounds the memory that a file can request.
+    /// Largest number of frames of a take, hours of motion. It bounds the memory that a file can request.
     pub const MOST_FRAMES: usize = 1 << 20;
 
     /// Samples a clip every `frame_time` seconds, from its start to its end. The last frame is the one nearest to the
@@ -89,7 +89,7 @@ impl Take {
     /// # Panics
     /// If the take does not fit the rig.
     pub fn to_clip(&self, rig: &Rig, name: &str) -> Clip {
-        assert_eq!(self.joints, rig.joints.len(), "a take of this rig");
+        assert_eq!(self.joints, rig.joints.len(), "the take must fit the rig");
         let times: Vec<f32> = (0..self.frames()).map(|frame| self.time(frame)).collect();
         let mut channels = Vec::new();
         for (joint, rest) in rig.joints.iter().map(|joint| joint.rest).enumerate() {

@@ -97,8 +97,8 @@ impl Ground {
 /// Returns the tilt of each sole while the foot stands, radians, positive for toes up, and the feet with soles
 /// flattened by it.
 ///
-/// A reference pose hardly shows how a shoe was worn, but the heights of heel and ball on the ground do. Tilts over 0.2
-/// rad come from standing on the toes and are ignored.
+/// The tilt of a sole is hard to see in a reference pose, but follows from the heights of heel and ball on the ground.
+/// Tilts over 0.2 rad come from standing on the toes and are ignored.
 pub fn flatten_soles(feet: &[Foot; 2], points: &[[[Vec3; 2]; 2]]) -> ([f32; 2], [Foot; 2]) {
     let (mut tilts, mut flat) = ([0.0; 2], *feet);
     for k in 0..2 {

@@ -45,7 +45,7 @@ fn tip(rig: &Rig, joints: &[JointIdx]) -> Vec3 {
     let reach = skin_of(rig, *last).map(|place| place.dot(way / scale)).fold(0.0, max);
     debug_assert!(
         rig.joints[*last].parent == Some(*above),
-        "a column's joints are each the parent of the next"
+        "each joint of a column is the parent of the next"
     );
     if reach > HEM_SHARE * length * scale { way * (reach / scale) } else { Vec3::ZERO }
 }

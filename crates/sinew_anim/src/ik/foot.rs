@@ -60,7 +60,7 @@ pub struct PlacedFeet {
 /// is kept: on ground with edges, smooth the heights that `ground` returns.
 ///
 /// # Panics
-/// If the slices are not as long as the rig has joints, or a joint is not in it.
+/// If a slice does not have one entry per joint of the rig, or a joint is not in the rig.
 pub fn place_feet(
     rig: &Rig,
     pelvis: JointIdx,
@@ -70,7 +70,11 @@ pub fn place_feet(
     local: &mut [LocalTransform],
     model: &mut [Affine],
 ) -> PlacedFeet {
-    assert_eq!((local.len(), model.len()), (rig.joints.len(), rig.joints.len()), "two poses of one rig");
+    assert_eq!(
+        (local.len(), model.len()),
+        (rig.joints.len(), rig.joints.len()),
+        "the poses must be of one rig"
+    );
     let steps = legs.map(|leg| Step::of(model, leg, settings, ground(model[leg.end].translation)));
     let mut lift =
         steps.iter().filter_map(|step| step.as_ref()).map(|step| step.raise).reduce(min).unwrap_or(0.0);
@@ -97,7 +101,7 @@ pub fn place_feet(
 /// joint; both are updated.
 ///
 /// # Panics
-/// If the slices are not as long as the rig has joints, or a joint is not in it.
+/// If a slice does not have one entry per joint of the rig, or a joint is not in the rig.
 pub fn hold_feet(
     rig: &Rig,
     pelvis: JointIdx,
@@ -107,7 +111,11 @@ pub fn hold_feet(
     local: &mut [LocalTransform],
     model: &mut [Affine],
 ) -> f32 {
-    assert_eq!((local.len(), model.len()), (rig.joints.len(), rig.joints.len()), "two poses of one rig");
+    assert_eq!(
+        (local.len(), model.len()),
+        (rig.joints.len(), rig.joints.len()),
+        "the poses must be of one rig"
+    );
     let highest =
         |(leg, ankle): (&TwoBone, &Transform)| highest_pelvis(model, leg, ankle.translation, Vec3::Y);
     let lift = legs.iter().zip(ankles).map(highest).fold(-least, min);

@@ -37,9 +37,13 @@ pub struct Look {
 /// itself, a target that is not finite, and a zero `forward` have no effect.
 ///
 /// # Panics
-/// If the slices are not as long as the rig has joints, or the joint is not in it.
+/// If a slice does not have one entry per joint of the rig, or the joint is not in the rig.
 pub fn look_at(rig: &Rig, look: &LookAt, local: &mut [LocalTransform], model: &mut [Affine]) -> Look {
-    assert_eq!((local.len(), model.len()), (rig.joints.len(), rig.joints.len()), "two poses of one rig");
+    assert_eq!(
+        (local.len(), model.len()),
+        (rig.joints.len(), rig.joints.len()),
+        "the poses must be of one rig"
+    );
     let place = &model[look.joint];
     let (forward, wanted) =
         (direction(place.vector(look.forward)), direction(look.target - place.translation));

@@ -161,7 +161,7 @@ fn planes(root: Vec3, middle: Vec3, end: Vec3, along: Vec3, pole: Pole) -> (Vec3
 /// weight.
 ///
 /// # Panics
-/// If the slices are not as long as the rig has joints, or a joint is not in it.
+/// If a slice does not have one entry per joint of the rig, or a joint is not in the rig.
 pub fn two_bone_ik(
     rig: &Rig,
     limb: TwoBone,
@@ -169,7 +169,11 @@ pub fn two_bone_ik(
     local: &mut [LocalTransform],
     model: &mut [Affine],
 ) -> TwoBoneSolution {
-    assert_eq!((local.len(), model.len()), (rig.joints.len(), rig.joints.len()), "two poses of one rig");
+    assert_eq!(
+        (local.len(), model.len()),
+        (rig.joints.len(), rig.joints.len()),
+        "the poses must be of one rig"
+    );
     let place = |joint: JointIdx| model[joint].translation;
     let solution = solve_two_bone(place(limb.upper), place(limb.lower), place(limb.end), goal);
     let weight = clamp(goal.weight, 0.0, 1.0);

@@ -110,7 +110,7 @@ impl Inertia {
         );
         let joints = from.now.len();
         for pose in [from.other, to.now, to.other] {
-            assert_eq!(pose.len(), joints, "four poses of one rig");
+            assert_eq!(pose.len(), joints, "the poses must be of one rig");
         }
         (self.seconds, self.elapsed) = (seconds, 0.0);
         self.joints.clear();

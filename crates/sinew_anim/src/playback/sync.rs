@@ -1,4 +1,4 @@
-//! Phases: match loops of different lengths.
+//! Phases, by which loops of different lengths are kept in step.
 
 use crate::playback::playhead::{Place, Playhead};
 

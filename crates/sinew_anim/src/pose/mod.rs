@@ -33,7 +33,7 @@ pub fn rest_pose(rig: &Rig) -> Vec<LocalTransform> {
 /// and filled, one entry per joint.
 ///
 /// # Panics
-/// If `local` is not as long as the rig has joints.
+/// If `local` does not have one entry per joint of the rig.
 pub fn local_to_model(rig: &Rig, local: &[LocalTransform], root: &Affine, model: &mut Vec<Affine>) {
     assert_eq!(local.len(), rig.joints.len(), "a pose has one local transform per joint");
     model.clear();
@@ -59,7 +59,7 @@ pub struct JointVelocity {
 /// # Panics
 /// If the poses differ in length.
 pub fn joint_velocities(before: &[Affine], after: &[Affine], dt: f32, out: &mut Vec<JointVelocity>) {
-    assert_eq!(before.len(), after.len(), "two poses of one rig");
+    assert_eq!(before.len(), after.len(), "the poses must be of one rig");
     out.clear();
     out.extend(before.iter().zip(after).map(|(a, b)| {
         if dt.is_nan() || dt <= 0.0 {

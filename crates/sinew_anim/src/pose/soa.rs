@@ -77,7 +77,7 @@ impl Pose {
     /// # Panics
     /// If the poses differ in length.
     pub fn copy_from(&mut self, other: &Self) {
-        assert_eq!(self.joints, other.joints, "two poses of one rig");
+        assert_eq!(self.joints, other.joints, "the poses must be of one rig");
         self.blocks.copy_from_slice(&other.blocks);
     }
 

@@ -30,7 +30,7 @@ const LOOKS: usize = 24;
 /// [`NoSkin`] if no bone has a length.
 ///
 /// # Panics
-/// If `stated` is not as long as the rig has joints, and as [`sample`](crate::clip::sample::sample()).
+/// If `stated` does not have one entry per joint of the rig, and as [`sample`](crate::clip::sample::sample()).
 pub fn stand(
     rig: &Rig,
     clip: &Clip,

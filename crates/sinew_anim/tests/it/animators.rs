@@ -162,7 +162,7 @@ fn one_shot_clip_takes_its_end_action() {
         assert_eq!(after(EndAction::Hold, 1.25, steps), Some(1.0));
         assert_eq!(after(EndAction::Pause, 1.25, steps), Some(1.0));
         assert_eq!(after(EndAction::Stop, 1.25, steps), None);
-        let again = after(EndAction::Restart, 2.25, steps).expect("it goes on");
+        let again = after(EndAction::Restart, 2.25, steps).expect("the track restarts");
         assert!((again - 0.25).abs() < 1e-4, "restarted at {again} s in {steps} steps");
     }
 }
@@ -292,7 +292,7 @@ fn sync_group_aligns_footsteps() {
     let mut steps = Vec::new();
     for _ in 0..600 {
         animator.update_with(&set, 0.01, |fired, event| steps.push((fired.track, event.payload.clone())));
-        let time = |id| f64::from(animator.track(id).expect("it plays").playhead().clip_time());
+        let time = |id| f64::from(animator.track(id).expect("the track exists").playhead().clip_time());
         // Between the same two footsteps, both clips are at the same fraction.
         let share = |time: f64, left: f64, right: f64, length: f64| {
             let since_left = (time - left).rem_euclid(length);
@@ -321,7 +321,7 @@ fn track_that_joins_a_group_takes_its_phase() {
     animator.update(&set, 0.35);
     let run = animator.play(&set, &TrackDef { weight: 0.1, ..run });
     // Both clips are halfway from left to right.
-    let time = animator.track(run).expect("it plays").playhead().clip_time();
+    let time = animator.track(run).expect("the track exists").playhead().clip_time();
     assert!((time - 0.375).abs() < 1e-4, "{time}");
 }
 
@@ -411,7 +411,7 @@ fn footstep_is_reported_once_for_any_leading_clip() {
             "steps must alternate between left and right: {steps:?}"
         );
         // The number of passed markers, with a tolerance of one at the current time.
-        let place = animator.track(tracks[0]).expect("it plays").playhead();
+        let place = animator.track(tracks[0]).expect("the track exists").playhead();
         let laps = place.lap() as f32 + place.clip_time() - 0.25;
         assert!((steps.len() as f32 - 2.0 * laps.abs()).abs() < 1.2, "{} steps in {laps} laps", steps.len());
     }

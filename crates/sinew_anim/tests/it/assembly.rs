@@ -642,7 +642,9 @@ fn head_parented_to_the_armature_joins_the_head() {
         *corner = place + (*corner - place) * 6.0 + Vec3::Y * if k == 0 { -0.1 } else { 0.6 };
     });
     let sorted = in_order(&rig);
-    let at = |name: &str| sorted.joints.iter().position(|joint| joint.name == name).expect("it is there");
+    let at = |name: &str| {
+        sorted.joints.iter().position(|joint| joint.name == name).expect("the rig has this joint")
+    };
     let found = analyze(&sorted).expect("a skin");
     // The hat protrudes enough to get its own body.
     let body = |name: &str| found.kept.iter().find(|bone| bone.joint == at(name));
@@ -753,7 +755,9 @@ fn head_object_on_the_armature_keeps_its_mesh_and_hair() {
     let primitive = Primitive { positions, indices, ..Primitive::default() };
     rig.meshes.push(RigMesh { name: String::new(), joint: eyes, skin: None, primitives: vec![primitive] });
     let sorted = in_order(&rig);
-    let at = |name: &str| sorted.joints.iter().position(|joint| joint.name == name).expect("it is there");
+    let at = |name: &str| {
+        sorted.joints.iter().position(|joint| joint.name == name).expect("the rig has this joint")
+    };
     let found = analyze(&sorted).expect("a skin");
     let body = found.kept.iter().find(|bone| bone.joint == at("Goblin_head")).expect("the object has a body");
     let carrier = body.parent.map(|parent| found.kept[parent].joint);
@@ -810,7 +814,9 @@ fn separate_prop_follows_its_carrier() {
     let primitive = Primitive { positions, indices, ..Primitive::default() };
     rig.meshes.push(RigMesh { name: String::new(), joint: hat, skin: None, primitives: vec![primitive] });
     let sorted = in_order(&rig);
-    let at = |name: &str| sorted.joints.iter().position(|joint| joint.name == name).expect("it is there");
+    let at = |name: &str| {
+        sorted.joints.iter().position(|joint| joint.name == name).expect("the rig has this joint")
+    };
     let found = analyze(&sorted).expect("a skin");
     assert!(found.kept.iter().any(|bone| bone.joint == at("hat") && bone.is_prop), "{:?}", found.notes);
     let riders = Riders::of(&sorted, &found);

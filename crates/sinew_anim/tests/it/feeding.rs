@@ -99,7 +99,8 @@ fn loaded_animator_can_be_fed() {
     let mut out = Writer::new();
     fed.save(&set, &mut out);
     let bytes = out.into_bytes();
-    let mut loaded = Animator::load(&set, &mut Reader::new(&bytes)).expect("it was saved");
+    let mut loaded =
+        Animator::load(&set, &mut Reader::new(&bytes)).expect("the saved animator can be loaded");
     let mut fed = fed;
     for _ in 0..3 {
         fed.update(&set, DT);

@@ -73,7 +73,7 @@ fn alternately_swinging_chains_are_the_legs() {
     let still = analyze(&rig).expect("a skin");
     assert!(still.humanoid && tails.contains(&thigh(&still)), "{}", thigh(&still));
     let mut walks = walk(1.1, 1.0);
-    // The tails swing, too, but together.
+    // The tails swing as well, but in phase with each other.
     walks.channels.extend(tails.iter().map(|&tail| turns(tail, 1.1, |t| 0.3 * trig::sin(2.0 * t))));
     // Chains of which only one swings, or both swing together, are no legs.
     let kick = Clip { duration: 1.0, channels: vec![turns(tails[0], 1.0, trig::sin)], ..Clip::default() };
@@ -142,7 +142,7 @@ fn tall(units: f32, head: f32) -> Rig {
 fn unit(rig: &Rig, hints: &Hints) -> (f32, String) {
     let found = analyze_hinted(rig, hints).expect("a skin");
     assert!(found.humanoid);
-    (found.unit_scale, found.unit_guess.expect("it was not given").note)
+    (found.unit_scale, found.unit_guess.expect("the unit is guessed").note)
 }
 
 /// A body of 66 units is a man in inches, or a dwarf in centimetres.
@@ -197,7 +197,7 @@ fn human_of_implausible_size_is_scaled() {
     for (units, scaled) in [(0.57, true), (5.75, true), (1.2, false), (2.3, false)] {
         let rig = tall(units, 1.0);
         let found = analyze_hinted(&rig, &Hints::default()).expect("a skin");
-        let guess = found.unit_guess.expect("it was not given");
+        let guess = found.unit_guess.expect("the unit is guessed");
         assert_eq!(guess.is_scaled, scaled, "{units}: {}", guess.note);
         let height = if scaled { 1.75 } else { units };
         assert!((found.height - height).abs() < 0.01, "{units}: {} m", found.height);
@@ -234,7 +234,7 @@ fn named_animal_gets_the_size_of_its_species() {
     let length = |name: &str, units: f32| {
         let found = analyze_hinted(&worm(units, name), &Hints::default()).expect("a skin");
         assert!(!found.humanoid, "{:?}", found.notes);
-        (found.unit_scale, found.unit_guess.expect("it was not given"))
+        (found.unit_scale, found.unit_guess.expect("the unit is guessed"))
     };
     for (name, units, unit) in [
         ("", 2.7, 1.0),
@@ -275,7 +275,7 @@ fn walk_with_uneven_feet_has_a_speed() {
         }
         Clip { name: String::new(), duration: 1.0, channels }
     };
-    let speed = |clip: &Clip| footsteps(&rig, &found, clip).expect("it has legs").speed;
+    let speed = |clip: &Clip| footsteps(&rig, &found, clip).expect("the rig has legs").speed;
     let walk = speed(&clip(0.5));
     assert!((0.4..2.5).contains(&walk), "{walk} m/s");
     assert_eq!(speed(&clip(0.0)), 0.0);

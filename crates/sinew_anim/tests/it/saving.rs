@@ -135,7 +135,10 @@ fn state_with_too_many_cycles_is_rejected() {
         Animator::load(&set, &mut Reader::new(&bytes)).map(|_| ()).map_err(|error| error.to_string())
     };
     let place_of = |bytes: &[u8], what: &[u8]| {
-        bytes.windows(what.len()).position(|window| window == what).expect("it was saved")
+        bytes
+            .windows(what.len())
+            .position(|window| window == what)
+            .expect("the saved bytes contain the value")
     };
     let alone = TrackDef::new(clip);
     assert_eq!(load(&|_, _| {}, &alone), Ok(()));

@@ -101,7 +101,7 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
 fn fine_mesh_is_reduced_and_drawn_unchanged() {
     let mut it = rig(80);
     let before = drawn(&it, &rest_pose(&it));
-    let sheet = lay(&mut it, 2000, None).expect("it can be cloth");
+    let sheet = lay(&mut it, 2000, None).expect("the mesh can be cloth");
     let sheet = &it.sheets[sheet];
     assert_eq!(sheet.vertices, 81 * 81);
     // Numbers of particles such that no point of a square metre is farther than 25 mm from one: 616 in a hexagonal
@@ -132,7 +132,7 @@ fn fine_mesh_is_reduced_and_drawn_unchanged() {
 fn particle_count_stays_below_its_limit() {
     for most in [4, 30, MOST_PARTICLES] {
         let mut it = rig(60);
-        let sheet = lay(&mut it, most, None).expect("it can be cloth");
+        let sheet = lay(&mut it, most, None).expect("the mesh can be cloth");
         let count = it.sheets[sheet].joints.len();
         assert!(count <= most && count > most / 2, "{count} of {most}");
     }
@@ -142,7 +142,7 @@ fn particle_count_stays_below_its_limit() {
 fn coarse_mesh_gets_a_particle_per_vertex_and_the_given_held_depth() {
     for (held, rows) in [(None, 2), (Some(0.35), 4), (Some(0.0), 1)] {
         let mut it = rig(10);
-        let sheet = lay_at(&mut it, 400, held, COARSE).expect("it can be cloth");
+        let sheet = lay_at(&mut it, 400, held, COARSE).expect("the mesh can be cloth");
         let sheet = &it.sheets[sheet];
         assert_eq!((sheet.joints.len(), sheet.faces.len(), sheet.links.len()), (121, 200, 320));
         assert_eq!(sheet.held.iter().filter(|held| **held).count(), 11 * rows, "{held:?}");
@@ -159,7 +159,7 @@ fn coarse_mesh_gets_a_particle_per_vertex_and_the_given_held_depth() {
 fn mesh_coarser_than_its_spacing_is_split() {
     let mut it = rig(4);
     let before = drawn(&it, &rest_pose(&it));
-    let sheet = lay_at(&mut it, 400, None, 0.07).expect("it can be cloth");
+    let sheet = lay_at(&mut it, 400, None, 0.07).expect("the mesh can be cloth");
     let sheet = it.sheets[sheet].clone();
     assert_eq!((sheet.vertices, sheet.joints.len(), sheet.faces.len()), (25, 17 * 17, 2 * 16 * 16));
     assert!((sheet.longest_edge - 0.25 * 2.0_f32.sqrt()).abs() < 1e-5, "{}", sheet.longest_edge);
@@ -188,7 +188,7 @@ fn mesh_coarser_than_its_spacing_is_split() {
     }
     // Splitting stops at the particle limit, and parts without cloth are not split.
     let mut it = rig(4);
-    let sheet = lay_at(&mut it, 60, None, 0.07).expect("it can be cloth");
+    let sheet = lay_at(&mut it, 60, None, 0.07).expect("the mesh can be cloth");
     assert_eq!(it.sheets[sheet].joints.len(), 60);
     let mut it = rig(4);
     let primitive = &mut it.meshes[0].primitives[0];
@@ -199,7 +199,7 @@ fn mesh_coarser_than_its_spacing_is_split() {
         primitive.joints.push([1, 0, 0, 0]);
         primitive.weights.push([1.0, 0.0, 0.0, 0.0]);
     }
-    let sheet = lay_at(&mut it, 400, None, 0.07).expect("it can be cloth");
+    let sheet = lay_at(&mut it, 400, None, 0.07).expect("the mesh can be cloth");
     assert_eq!((it.sheets[sheet].vertices, it.sheets[sheet].joints.len()), (28, 17 * 17));
 }
 
@@ -207,7 +207,7 @@ fn mesh_coarser_than_its_spacing_is_split() {
 fn meshes_are_named_by_node_mesh_or_material() {
     let mut it = rig(4);
     for name in ["Flag", "flag_mesh", "silk"] {
-        let part = MeshPart::named(&it, name).expect("it is there");
+        let part = MeshPart::named(&it, name).expect("the rig has this mesh");
         assert_eq!((part.mesh, part.primitives), (0, vec![0]));
     }
     assert_eq!(MeshPart::names(&it), ["Flag", "flag_mesh", "silk"]);
@@ -229,7 +229,7 @@ fn rigid_mesh_gets_a_skin_and_errors_change_nothing() {
     let (untouched, before) = (it.clone(), drawn(&it, &rest_pose(&it)));
     assert_eq!(lay(&mut it, 400, Some(2.0)), Err(SheetError::AllHeld));
     assert_eq!(it, untouched);
-    let sheet = lay(&mut it, 400, None).expect("it can be cloth");
+    let sheet = lay(&mut it, 400, None).expect("the mesh can be cloth");
     assert!(it.sheets[sheet].joints.iter().all(|&joint| it.joints[joint].parent == Some(2)));
     assert!(farthest(&before, &drawn(&it, &rest_pose(&it))) < 1e-5);
     assert_eq!(lay(&mut it, 400, None), Err(SheetError::Twice));
@@ -263,7 +263,7 @@ fn each_piece_gets_a_particle_or_an_error() {
 fn tiny_spacing_terminates() {
     let mut it = rig(20);
     let bind_model = bind(&it);
-    let part = MeshPart::named(&it, "Flag").expect("it is there");
+    let part = MeshPart::named(&it, "Flag").expect("the rig has this mesh");
     let first_source = it.joints.len();
     let options = SheetOptions {
         bind_model: &bind_model,
@@ -273,7 +273,7 @@ fn tiny_spacing_terminates() {
         most_particles: 100,
         first_source,
     };
-    let sheet = lay_sheet(&mut it, &part, &options).expect("it can be cloth");
+    let sheet = lay_sheet(&mut it, &part, &options).expect("the mesh can be cloth");
     assert!((50..=100).contains(&it.sheets[sheet].joints.len()));
 }
 
@@ -284,11 +284,11 @@ fn every_piece_of_a_reduced_sheet_is_held() {
         let mut it = rig(80);
         // One corner is slightly higher, so that one vertex is held, which is not the first on the border.
         it.meshes[0].primitives[0].positions[37].y += 1e-3;
-        let sheet = lay(&mut it, most, Some(0.0)).expect("it can be cloth");
+        let sheet = lay(&mut it, most, Some(0.0)).expect("the mesh can be cloth");
         assert_eq!(it.sheets[sheet].held.iter().filter(|held| **held).count(), 1, "{most}");
     }
     let mut it = strips(40, 5);
-    let sheet = lay(&mut it, 40, Some(0.0)).expect("it can be cloth");
+    let sheet = lay(&mut it, 40, Some(0.0)).expect("the mesh can be cloth");
     assert!(it.sheets[sheet].held.iter().filter(|held| **held).count() >= 8);
 }
 
@@ -297,7 +297,7 @@ fn every_piece_of_a_reduced_sheet_is_held() {
 fn sheet_area_equals_the_mesh_area() {
     for (across, most, area) in [(1, 2000, 1.0), (1, 30, 1.0), (80, 40, 1.0 / 80.0)] {
         let mut it = strips(80, across);
-        let sheet = lay(&mut it, most, None).expect("it can be cloth");
+        let sheet = lay(&mut it, most, None).expect("the mesh can be cloth");
         let sheet = &it.sheets[sheet];
         assert_eq!(sheet.areas.len(), sheet.joints.len());
         assert!(sheet.areas.iter().all(|area| *area > 0.0));
@@ -327,7 +327,7 @@ fn piece_above_the_cloth_does_not_take_its_held_vertices() {
     // Triangles without area do not count.
     let mut it = untouched;
     it.meshes[0].primitives[0].positions[first as usize + 2] = Vec3::new(0.5, 1.3, 0.0);
-    let sheet = lay_at(&mut it, 400, None, COARSE).expect("it can be cloth");
+    let sheet = lay_at(&mut it, 400, None, COARSE).expect("the mesh can be cloth");
     assert_eq!(it.sheets[sheet].held.iter().filter(|held| **held).count(), 22 + 3);
 }
 
@@ -353,7 +353,7 @@ fn degenerate_triangles_give_finite_weights() {
     }
     let edge = 5 * 11 + 10;
     primitive.indices.splice(0..0, [edge, first, edge - 1, first + 1, first + 2, first + 3]);
-    lay(&mut it, 400, None).expect("it can be cloth");
+    lay(&mut it, 400, None).expect("the mesh can be cloth");
     let weights = &it.meshes[0].primitives[0].weights;
     assert!(weights.iter().flatten().all(|weight| weight.is_finite()), "{:?}", &weights[first as usize..]);
 }
@@ -388,7 +388,7 @@ fn sheet_joints_do_not_count_as_strand_bones() {
     it.joints[1].name = "cape_2".into();
     let (springs, column) = (guess_springs(&it, Vec3::Y), GarmentColumn::below(&it, 0));
     assert_eq!((springs.bone_count(), column.joints.as_slice()), (1, &[0, 1][..]));
-    let sheet = lay(&mut it, 400, None).expect("it can be cloth");
+    let sheet = lay(&mut it, 400, None).expect("the mesh can be cloth");
     let borne = it.sheets[sheet].joints.iter().filter(|&&joint| it.joints[joint].parent == Some(1));
     assert!(borne.count() > 0, "some particles are children of the last bone");
     assert_eq!(guess_springs(&it, Vec3::Y), springs);

@@ -49,7 +49,7 @@ fn factor(text: &str) -> Result<f32, String> {
 }
 
 impl Boxes {
-    /// Reads, cooks, draws, writes.
+    /// Runs the command: reads the mesh, computes boxes, draws the picture and writes the world file.
     pub fn run(&self) -> Result<Report> {
         self.check_outputs()?;
         let name = self.mesh.display().to_string();

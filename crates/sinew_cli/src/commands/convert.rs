@@ -136,7 +136,7 @@ struct Content {
 }
 
 impl Convert {
-    /// Reads, converts, writes.
+    /// Runs the command: reads the clips, converts them and writes the output.
     pub fn run(&self) -> Result<Report> {
         let target = self.target()?;
         let inputs = [&self.input].into_iter().chain(&self.onto).map(PathBuf::as_path);
@@ -361,7 +361,7 @@ fn draw(outputs: &Outputs, new: usize, picture: &PictureFile) -> Result<Vec<u8>>
         .map_err(|error| Failure::of_file(picture.path().display().to_string(), error))
 }
 
-/// One line per clip, and the notes.
+/// Returns the text of the report: one line per clip, and the notes.
 type Told = (Vec<String>, Vec<String>);
 
 fn line_of(clip: &Clip) -> String {

@@ -41,7 +41,7 @@ pub struct Demo {
 }
 
 impl Demo {
-    /// Simulates, draws, writes.
+    /// Runs the command: simulates, draws the picture and writes the output.
     pub fn run(&self) -> Result<Report> {
         let demo = sinew_scenes::demo::Demo::new(Site::CabinWithStairs);
         let input = demo.input();

@@ -59,7 +59,7 @@ const FOOTSTEP: &str = "footstep";
 const SAME_STEP: f32 = 0.15;
 
 impl Detect {
-    /// Reads, detects, writes.
+    /// Runs the command: reads the clips, detects footsteps and writes the events.
     pub fn run(&self) -> Result<Report> {
         self.output.iter().try_for_each(|output| must_end_in(output, &["json"]))?;
         never_over([self.file.as_path()], self.output.as_deref())?;

@@ -1,4 +1,4 @@
-//! The commands: one struct and one file each.
+//! Commands of the program. Each command is a struct in a separate file.
 
 pub(crate) mod bake;
 mod boxes;

@@ -81,7 +81,7 @@ enum SexArg {
 }
 
 impl RagdollBuild {
-    /// Builds, drops, reports and writes the ragdoll.
+    /// Runs the command: builds the ragdoll, drops it, reports on it and writes it.
     pub fn run(&self) -> Result<Report> {
         let settings = self.settings.path_for(&self.file);
         never_over([self.file.as_path(), &settings], self.output.as_deref())?;

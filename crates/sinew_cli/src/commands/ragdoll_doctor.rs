@@ -68,7 +68,7 @@ fn skin_flaws(repair: &Repair, character: &CharacterFile) -> Vec<Flaw> {
 }
 
 impl RagdollDoctor {
-    /// Reads, examines, repairs, writes.
+    /// Runs the command: reads the ragdoll, examines it, repairs it on request and writes the result.
     pub fn run(&self) -> Result<Report> {
         let character = self.rig.as_deref().unwrap_or(&self.file);
         let settings = self.settings.path_for(character);

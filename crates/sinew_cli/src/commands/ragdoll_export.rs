@@ -54,7 +54,7 @@ impl Format {
 }
 
 impl RagdollExport {
-    /// Reads, converts, writes.
+    /// Runs the command: reads the clips, converts them and writes the output.
     pub fn run(&self) -> Result<Report> {
         let output = self.output();
         let settings = self.settings.path_for(&self.file);

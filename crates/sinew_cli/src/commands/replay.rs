@@ -29,14 +29,14 @@ pub struct Replay {
     diff: Option<PathBuf>,
 }
 
-/// Reads a recording.
+/// Reads a recording from a file.
 fn load(path: &Path) -> Result<Recording> {
     let name = name(path);
     Ok(Recording::read(&read_bytes(path)?).map_err(|error| error.with_file(name))?)
 }
 
 impl Replay {
-    /// Replays the recording.
+    /// Runs the command: replays the recording.
     pub fn run(&self) -> Result<Report> {
         let name = name(&self.file);
         let recording = load(&self.file)?;

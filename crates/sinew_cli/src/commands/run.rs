@@ -66,7 +66,7 @@ impl From<QualityName> for Quality {
 }
 
 impl Run {
-    /// Steps the scene.
+    /// Runs the command: steps the scene and reports on it.
     pub fn run(&self) -> Result<Report> {
         let (scene, settings) = choose(&self.scene, &self.settings)?;
         let steps = self.steps.unwrap_or(scene.steps);

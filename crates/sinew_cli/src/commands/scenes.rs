@@ -14,7 +14,7 @@ Example:
 pub struct Scenes {}
 
 impl Scenes {
-    /// Lists the scenes.
+    /// Runs the command: lists the scenes.
     pub fn run(&self) -> Result<Report> {
         let width = registry().iter().map(|scene| scene.name.len()).max().unwrap_or(0);
         let line = |scene: &Scene| format!("{:width$}  {}\n", scene.name, scene.about);

@@ -19,10 +19,10 @@ use std::path::{Path, PathBuf};
 /// Source of the weights of a skin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum WeightSource {
-    /// The file's own
+    /// The weights of the file
     #[default]
     File,
-    /// New ones, by the distance of vertices from bones
+    /// New weights, by the distance of vertices from bones
     Nearest,
 }
 

@@ -264,7 +264,7 @@ mod tests {
         });
         let rises = at(|event| matches!(event, CharacterEvent::GettingUp { .. }));
         let up = at(|event| matches!(event, CharacterEvent::Up));
-        let settled = settled.expect("it settles");
+        let settled = settled.expect("the camera settles");
         let frames = (fall.input.seconds * FPS as f32) as u32 + 1;
         let film = Film {
             fall: &fall,

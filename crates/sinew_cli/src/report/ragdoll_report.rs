@@ -171,7 +171,7 @@ impl RagdollReport<'_> {
                 SwingTwistLimit { swing_y: NONE, swing_z: NONE, twist: limit.unwrap_or(FREE.twist) },
             ),
             JointKind::Fixed => ("fixed", SwingTwistLimit { swing_y: NONE, swing_z: NONE, twist: NONE }),
-            kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
+            kind => unreachable!("{kind:?}: joints of a ragdoll only rotate"),
         };
         let limits_from = match self.build.bodies[joint.child].limits {
             LimitSource::Anatomy => "anatomy",

@@ -42,7 +42,7 @@ pub fn phases(def: &CharacterDef, events: &[(f32, CharacterEvent)]) -> Vec<Phase
             | CharacterEvent::LetGo { .. } => {}
         }
     }
-    // The sort is stable: of two events at one time the later entry is used.
+    // The sort is stable, so of two events at one time the later entry in the list is used.
     phases.sort_by(|a, b| a.0.total_cmp(&b.0));
     phases
 }

@@ -1,4 +1,4 @@
-//! Text tables for people.
+//! Tables as aligned text.
 
 /// Rows of aligned cells.
 #[derive(Debug, Default)]

@@ -39,7 +39,7 @@ fn bake_adds_the_fall_to_a_copy_of_the_file() {
     assert_eq!((&object["seconds"], &object["frames"]), (&0.5.into(), &13.into()));
     assert_eq!(object["outputs"], serde_json::json!([out, picture]));
     let [old, new] =
-        [&file, &out].map(|path| load_gltf(path, ReadOptions::default()).expect("it can be read"));
+        [&file, &out].map(|path| load_gltf(path, ReadOptions::default()).expect("the glTF can be read"));
     assert_eq!(new.clips.len(), old.clips.len() + 1);
     assert_eq!(new.clips[0], old.clips[0]);
     let baked = new.clips.last().expect("a clip");
@@ -56,7 +56,7 @@ fn key_error_bound_removes_keys() {
         let out = folder.path("out.glb");
         let arguments = [&["bake", file.as_str(), "--seconds", "3", "-o", &out, "--json"], error].concat();
         let object = sinew(&arguments).json();
-        let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+        let document = load_gltf(&out, ReadOptions::default()).expect("the glTF can be read");
         let clip = document.clips.last().expect("a clip").clone();
         let keys: usize = clip.channels.iter().map(|channel| channel.times.len()).sum();
         assert_eq!(object["keys"], keys);
@@ -124,14 +124,15 @@ fn bvh_output_has_the_bones_and_every_frame() {
         assert_eq!(of_bvh["key_error_max_m"], 0.0);
         let lost = |object: &serde_json::Value| object["notes"].to_string().contains("mesh");
         assert!(lost(&of_bvh) && !lost(&of_glb), "{of_bvh:#}");
-        let text = fs::read(&bvh).expect("it is written");
+        let text = fs::read(&bvh).expect("the file can be read");
         let read = read_bvh(&text, BvhOptions { unit: BvhUnit::Metres(0.01), ..BvhOptions::default() })
-            .expect("it can be read");
+            .expect("the BVH can be read");
         assert_eq!(
             (read.frames, (1.0 / read.frame_time).round() as u32),
             (frames, fps.parse().expect("a number"))
         );
-        let worst = between(&load_gltf(&glb, ReadOptions::default()).expect("it can be read"), &read, 1.0);
+        let worst =
+            between(&load_gltf(&glb, ReadOptions::default()).expect("the glTF can be read"), &read, 1.0);
         // Tolerance: six decimals, of degrees and centimetres.
         assert!(worst < 2e-5, "{fps}: {worst} m off");
     }
@@ -290,11 +291,11 @@ fn foreign_rigs_are_written_as_bvh() {
         let object = sinew(&[&arguments[..], &["-o", &bvh]].concat()).json();
         sinew(&[&arguments[..], &["--key-error", "0", "-o", &glb]].concat()).json();
         let unit = sinew(&["inspect", &file, "--json"]).json()["unit_scale"].as_f64().expect("a unit") as f32;
-        let text = fs::read(&bvh).expect("it is written");
+        let text = fs::read(&bvh).expect("the file can be read");
         let options = BvhOptions { unit: BvhUnit::Metres(0.01), ..BvhOptions::default() };
-        let read = read_bvh(&text, options).expect("it can be read");
+        let read = read_bvh(&text, options).expect("the BVH can be read");
         assert_eq!(object["frames"], read.frames, "{name}");
-        let document = load_gltf(&glb, ReadOptions::default()).expect("it can be read");
+        let document = load_gltf(&glb, ReadOptions::default()).expect("the glTF can be read");
         let worst = between(&document, &read, unit);
         println!("{name}: {worst} m, {}", object["notes"]);
         assert!(worst < 2e-4, "{name}: largest error {worst} m, {object:#}");
@@ -315,9 +316,9 @@ fn human_without_clips_gets_up_by_builtin_motions() {
         assert!(notes.iter().any(|note| note.as_str().is_some_and(|note| note.contains(what))), "{notes:?}");
     };
     let object = baked(&bare, &[]);
-    let up = object["up_s"].as_f64().expect("it is up") as f32;
+    let up = object["up_s"].as_f64().expect("the character got up") as f32;
     says(&object, "gets up by built-in motions");
-    let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+    let document = load_gltf(&out, ReadOptions::default()).expect("the glTF can be read");
     let hips = |time: f32| {
         let (rig, clip) = (&document.rig, document.clips.last().expect("a clip"));
         let (mut local, mut model) = (rest_pose(rig), Vec::new());
@@ -473,12 +474,12 @@ fn feet_on_the_root_follow_their_legs_and_keep_their_parent() {
         rig.joints[foot].parent = None;
     }
     let [file, out] = ["feet.glb", "fall.glb"].map(|name| folder.path(name));
-    fs::write(&file, glb(&rig, &[])).expect("it is written");
+    fs::write(&file, glb(&rig, &[])).expect("the file can be written");
     let arguments = ["bake", &file, "--limp-at", "0", "--seconds", "3", "--no-builtin-motions"];
     let object = sinew(&[&arguments[..], &["-o", &out, "--json"]].concat()).json();
     assert!(object["skin"]["contiguous"] == true && object["verdict"] != "bad", "{object:#}");
     let Document { rig: written, clips, .. } =
-        load_gltf(&out, ReadOptions::default()).expect("it can be read");
+        load_gltf(&out, ReadOptions::default()).expect("the glTF can be read");
     let clip = clips.last().expect("the fall");
     let mut pose = rest_pose(&written);
     let mut lowest = f32::INFINITY;
@@ -633,11 +634,12 @@ fn speed_moves_a_walk_on_the_spot_ahead() {
     };
     let way = |extra: &[&str]| {
         let object = bake(&[extra, &["--json"]].concat()).json();
-        let Document { rig, clips, .. } = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+        let Document { rig, clips, .. } =
+            load_gltf(&out, ReadOptions::default()).expect("the glTF can be read");
         let (mut pose, mut model) = (rest_pose(&rig), Vec::new());
         sample(clips.last().expect("a clip"), &rig, 2.0, Wrap::Clamp, &mut pose);
         local_to_model(&rig, &pose, &Affine::IDENTITY, &mut model);
-        let hips = rig.joints.iter().position(|joint| joint.name == "hips").expect("it has hips");
+        let hips = rig.joints.iter().position(|joint| joint.name == "hips").expect("the rig has this joint");
         (model[hips].translation.z, object["notes"].to_string())
     };
     let (on_the_spot, notes) = way(&[]);

@@ -7,7 +7,7 @@ use sinew::anim::{Wrap, rest_pose, sample};
 use sinew::formats::{MotionFile, MotionOptions, ReadOptions, load_gltf, load_motion};
 
 fn load(path: &str) -> MotionFile {
-    load_motion(path, &MotionOptions::default()).expect("what was written can be read")
+    load_motion(path, &MotionOptions::default()).expect("the written file can be read")
 }
 
 /// Largest difference between poses of joints with equal names, radians and metres, at key times of the first file.
@@ -81,7 +81,7 @@ fn bvh_options_are_applied() {
         "--rest-frame",
     ]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    let text = std::fs::read_to_string(&out).expect("it is written");
+    let text = std::fs::read_to_string(&out).expect("the file can be read");
     assert!(text.contains("Frame Time: 0.025000000") && text.contains("Frames: 6\n"), "{text}");
     assert!(text.contains("Xrotation Yrotation Zrotation") && text.contains("End Site"), "{text}");
     let row = text.lines().nth_back(4).expect("the first frame of the motion");
@@ -102,7 +102,7 @@ fn clips_are_retargeted_to_another_body() {
     let run = sinew(&["convert", &bvh, "--unit-in", "0.02", "--onto", &mannequin, &out]);
     assert!(run.code == Some(0) && run.stdout.contains("matched by role"), "{run:?}");
     assert!(run.stdout.contains("legs 0.50 times as long"), "{run:?}");
-    let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+    let document = load_gltf(&out, ReadOptions::default()).expect("the glTF can be read");
     let names: Vec<&str> = document.clips.iter().map(|clip| clip.name.as_str()).collect();
     assert_eq!(names, ["Walk", "walk"]);
     // Other commands accept clips in the same way.
@@ -149,7 +149,7 @@ fn vrm_animation_moves_only_its_joints() {
     let run =
         sinew(&["convert", &file("vrma_test.vrma"), "--onto", &file("CoolLoops_mixamorig_vrm0.vrm"), &out]);
     assert!(run.code == Some(0) && run.stdout.contains("left out of a VRM animation"), "{run:?}");
-    let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+    let document = load_gltf(&out, ReadOptions::default()).expect("the glTF can be read");
     let clip = document.clips.last().expect("the clip is there");
     let span = |role: &str| {
         let joint = document.rig.stated_roles.iter().find(|(name, _)| name == role).expect("a bone").1;
@@ -212,7 +212,7 @@ fn footsteps_of_the_mannequin() {
 fn every_captured_file_becomes_a_glb() {
     let data = shared_data();
     let folder = Folder::new("convert-mocap");
-    for entry in std::fs::read_dir(data.join("mocap")).expect("the folder is there") {
+    for entry in std::fs::read_dir(data.join("mocap")).expect("the folder exists") {
         let path = entry.expect("an entry").path().display().to_string();
         let out = folder.path("out.glb");
         let run = sinew(&["convert", &path, &out]);

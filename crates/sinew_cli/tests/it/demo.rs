@@ -43,7 +43,7 @@ fn positions(demo: &Demo, baked: &Baked, pose: &[LocalTransform]) -> Vec<Vec3> {
 /// Joint positions in the last limp frame.
 fn lying(demo: &Demo, baked: &Baked) -> Vec<Vec3> {
     let limp = baked.frames.iter().rev().find(|frame| frame.state == State::Limp);
-    positions(demo, baked, &limp.expect("it goes limp").pose)
+    positions(demo, baked, &limp.expect("the character goes limp").pose)
 }
 
 fn farthest_apart(a: &[Vec3], b: &[Vec3]) -> f32 {
@@ -77,7 +77,7 @@ fn other_hits_give_other_falls_of_the_same_quality() {
 fn demo_falls_down_the_stairs_and_flat_without_them() {
     let stairs = Demo::new(Site::CabinWithStairs);
     let baked = fall(&stairs);
-    let limp = baked.frames.iter().find(|frame| frame.state == State::Limp).expect("it goes limp");
+    let limp = baked.frames.iter().find(|frame| frame.state == State::Limp).expect("the character goes limp");
     let drop = highest(&positions(&stairs, &baked, &limp.pose)) - highest(&lying(&stairs, &baked));
     assert!(drop > PORCH_HEIGHT, "it falls by {drop} m");
 

@@ -32,7 +32,7 @@ fn cape_of_the_settings_moves_in_the_bake() {
         let args = [&["bake", &file, "--seconds", "1", "-o", &out, "--json"], more].concat();
         let object = sinew(&args).json();
         check_keys("bake", &object);
-        let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+        let document = load_gltf(&out, ReadOptions::default()).expect("the glTF can be read");
         let clip = document.clips.last().expect("a clip").clone();
         let turns = |channel: &&sinew::anim::Channel| {
             channel.property == Property::Rotation
@@ -79,7 +79,7 @@ fn mesh_garment_of_the_settings_becomes_cloth_in_the_bake() {
     assert!(object["skin"]["covered_share"].as_f64().expect("a number") > 0.95, "{}", object["skin"]);
 
     let before = load_gltf(&file, ReadOptions::default()).expect("the input").rig;
-    let baked = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+    let baked = load_gltf(&out, ReadOptions::default()).expect("the glTF can be read");
     assert_eq!(baked.rig.joints.len(), before.joints.len() + particles);
     let skirt =
         |rig: &sinew::anim::Rig| rig.meshes.iter().position(|mesh| mesh.name == "Skirt").expect("a skirt");
@@ -114,7 +114,7 @@ fn mesh_garment_of_the_settings_becomes_cloth_in_the_bake() {
     assert!(moving(Property::Translation) > particles / 2, "{}", moving(Property::Translation));
 
     assert_eq!(bake(&["--no-garments"]).json()["garments"]["particles"], 0);
-    let bare = load_gltf(&out, ReadOptions::default()).expect("it can be read").rig;
+    let bare = load_gltf(&out, ReadOptions::default()).expect("the glTF can be read").rig;
     assert_eq!(bare.meshes, before.meshes, "the meshes changed");
 }
 

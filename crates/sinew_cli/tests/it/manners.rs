@@ -53,7 +53,7 @@ fn links_are_followed_and_devices_never_replaced() {
     std::os::unix::fs::symlink("target.json", &link).expect("a link");
     assert_eq!(sinew(&["ragdoll", "build", &file, "-o", &link]).code, Some(0));
     assert!(fs::symlink_metadata(&link).expect("the link").is_symlink());
-    assert!(fs::read_to_string(&target).expect("its target").starts_with("{"));
+    assert!(fs::read_to_string(&target).expect("the target can be read").starts_with("{"));
     let device = folder.path("device.json");
     std::os::unix::fs::symlink("/dev/null", &device).expect("a link");
     let run = sinew(&["ragdoll", "build", &file, "-o", &device]);
@@ -102,7 +102,7 @@ fn two_bakes_give_two_clips() {
         (run, to)
     };
     let names = |path: &str| -> Vec<String> {
-        let document = load_gltf(path, ReadOptions::default()).expect("it can be read");
+        let document = load_gltf(path, ReadOptions::default()).expect("the glTF can be read");
         document.clips.into_iter().map(|clip| clip.name).collect()
     };
     let (_, first) = bake(&file, "first.glb", &[]);
@@ -264,7 +264,7 @@ fn notes_are_not_repeated() {
         all.dedup();
         assert_eq!(all.len(), count, "{command:?}: {all:?}");
     }
-    let motion = load_motion(&file, &MotionOptions::default()).expect("it can be read");
+    let motion = load_motion(&file, &MotionOptions::default()).expect("the motion can be read");
     assert!(motion.notes.is_empty());
 }
 
@@ -305,9 +305,10 @@ fn unwritable_output_fails_with_one_line() {
 #[test]
 fn closed_pipe_is_no_failure() {
     use std::process::Stdio;
-    let mut child = command(&["scenes", "--json"]).stdout(Stdio::piped()).spawn().expect("it starts");
+    let mut child =
+        command(&["scenes", "--json"]).stdout(Stdio::piped()).spawn().expect("the command starts");
     drop(child.stdout.take());
-    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+    assert_eq!(child.wait().expect("the command ends").code(), Some(0));
 }
 
 #[test]
@@ -342,7 +343,7 @@ fn fractional_frame_rate_is_accepted() {
 #[test]
 fn unsupported_file_kinds_are_named() {
     let folder = Folder::new("foreign");
-    fs::write(folder.path("packed.glb"), [0x1f, 0x8b, 8, 0]).expect("it is written");
+    fs::write(folder.path("packed.glb"), [0x1f, 0x8b, 8, 0]).expect("the file can be written");
     let urdf = r#"<?xml version="1.0"?><robot name="arm"><link name="base"/></robot>"#;
     let robot = folder.file("robot.urdf", urdf);
     for (file, what) in [(folder.path("packed.glb"), "compressed by gzip"), (robot, "a URDF robot")] {
@@ -393,7 +394,7 @@ fn dash_reads_standard_input() {
     let folder = Folder::new("stdin");
     let file = folder.file("man.glb", glb(&mannequin().rig, &mannequin().clips));
     let piped = |arguments: &[&str]| {
-        let input = std::fs::File::open(&file).expect("it was written just now");
+        let input = std::fs::File::open(&file).expect("the file was just written");
         Run::of(command(arguments).stdin(input))
     };
     let [from_file, from_pipe] =

@@ -102,7 +102,8 @@ fn skin_in_the_floor_is_reported() {
     let object = sinew(&["ragdoll", "doctor", &file, "--json"]).json();
     check_keys("ragdoll doctor", &object);
     let findings = object["findings"].as_array().expect("findings");
-    let found = findings.iter().find(|finding| finding["code"] == "skin-off-floor").expect("it is told");
+    let found =
+        findings.iter().find(|finding| finding["code"] == "skin-off-floor").expect("the finding is reported");
     assert_eq!((&found["bone"], &found["fixed"]), (&"Main1".into(), &false.into()));
     let built = sinew(&["ragdoll", "build", &file, "--json"]).json();
     assert_eq!(built["quality"]["verdict"], "usable");

@@ -24,8 +24,9 @@ fn recording_verifies_and_diff_finds_the_step() {
     assert!(differs.refusal(1).contains("another scene or other settings"), "{differs:?}");
     assert!(sinew(&["replay", &mine, "--diff", &mine]).stdout.contains("50 steps, all equal"));
 
-    // Recorded by another version, and with another hash at the last step.
-    let mut recording = Recording::read(&std::fs::read(&mine).expect("it is there")).expect("a recording");
+    // The recording is of another version, and has another hash at the last step.
+    let mut recording =
+        Recording::read(&std::fs::read(&mine).expect("the file can be read")).expect("a recording");
     recording.made_by = "9.1.0".to_owned();
     let tampered = folder.file("tampered.sinewrec", recording.to_bytes());
     assert_eq!(
@@ -49,7 +50,7 @@ fn damaged_and_tampered_recordings_are_reported() {
     let folder = Folder::new("recordings-damaged");
     let mine = folder.path("mine.sinewrec");
     assert_eq!(sinew(&["record", "pendulum", "-o", &mine, "--steps", "50"]).code, Some(0));
-    let bytes = std::fs::read(&mine).expect("it is there");
+    let bytes = std::fs::read(&mine).expect("the file can be read");
     for k in 0..60 {
         let place = k * (bytes.len() - 1) / 59;
         let mut flipped = bytes.clone();

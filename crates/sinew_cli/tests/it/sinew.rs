@@ -21,7 +21,7 @@ impl Run {
     /// Runs a prepared command.
     pub fn of(command: &mut Command) -> Self {
         let Output { status, stdout, stderr } = command.output().expect("the binary starts");
-        let text = |bytes| String::from_utf8(bytes).expect("it prints UTF-8");
+        let text = |bytes| String::from_utf8(bytes).expect("the output is UTF-8");
         Self { code: status.code(), stdout: text(stdout), stderr: text(stderr) }
     }
 
@@ -88,7 +88,7 @@ impl Folder {
 
     /// Returns the sorted names of the folder's entries.
     pub fn names(&self) -> Vec<String> {
-        let entries = fs::read_dir(&self.path).expect("the folder is there");
+        let entries = fs::read_dir(&self.path).expect("the folder exists");
         let name = |entry: std::io::Result<fs::DirEntry>| {
             entry.expect("an entry").file_name().to_string_lossy().into_owned()
         };

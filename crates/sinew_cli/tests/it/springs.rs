@@ -49,7 +49,7 @@ fn avatar_hair_moves_in_the_bake() {
     let bake = |more: &[&str]| {
         let object = sinew(&[&["bake", &file, "--seconds", "3", "-o", &out, "--json"], more].concat()).json();
         check_keys("bake", &object);
-        let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+        let document = load_gltf(&out, ReadOptions::default()).expect("the glTF can be read");
         let clip = document.clips.last().expect("a clip");
         (object["springs"].clone(), swings(clip, &document.rig), object["hash"].clone())
     };

@@ -164,8 +164,8 @@ fn bvh_with_fewer_frames_than_declared_is_played() {
     let folder = Folder::new("verdict-cut");
     let (file, bvh, out) = (folder.mannequin(), folder.path("walk.bvh"), folder.path("out.glb"));
     sinew(&["bake", &file, "--seconds", "2", "--limp-at", "9", "-o", &bvh, "--json"]).json();
-    let text = std::fs::read_to_string(&bvh).expect("it is written");
-    std::fs::write(&bvh, text.replace("Frames: 61", "Frames: 500")).expect("it is written");
+    let text = std::fs::read_to_string(&bvh).expect("the file can be read");
+    std::fs::write(&bvh, text.replace("Frames: 61", "Frames: 500")).expect("the file can be written");
     let object = sinew(&["bake", &file, "--clips", &bvh, "--seconds", "1", "-o", &out, "--json"]).json();
     assert!(object["notes"].to_string().contains("declares 500 frames, has 61"), "{object:#}");
 }
@@ -195,7 +195,7 @@ fn lost_weights_are_rebuilt_on_request() {
     let out = folder.path("out.glb");
     let baked = sinew(&["bake", &file, "--weights", "nearest", "-o", &out, "--json"]).json();
     assert_ne!(baked["verdict"], "bad", "{}", baked["reasons"]);
-    let written = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+    let written = load_gltf(&out, ReadOptions::default()).expect("the glTF can be read");
     assert_eq!(lost_weights(&written.rig), None, "the baked file has the new weights");
 }
 
@@ -225,7 +225,7 @@ fn character_lying_in_its_file_starts_lying() {
         let out = folder.path("out.glb");
         let arguments = [&["bake", file.as_str(), "-o", &out, "--seconds", "2", "--json"], extra].concat();
         let object = sinew(&arguments).json();
-        let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+        let document = load_gltf(&out, ReadOptions::default()).expect("the glTF can be read");
         let (rig, clip) = (&document.rig, document.clips.last().expect("a clip"));
         let trunk = |time: f32| {
             let (mut pose, mut model) = (rest_pose(rig), Vec::new());

@@ -14,7 +14,7 @@ fn picture_has_equal_bytes_on_every_machine() {
     assert_eq!(object["outputs"][0], out.as_str());
     assert_eq!(object["at_s"], 0.0);
     assert!(object["seconds"].is_null(), "{object}");
-    let bytes = std::fs::read(&out).expect("the picture is there");
+    let bytes = std::fs::read(&out).expect("the picture exists");
     assert_eq!(format!("{:016x}", hash_bytes(&bytes)), "b1f3ac56c5a34763");
 }
 
@@ -27,7 +27,7 @@ fn a_setting_and_the_time_change_the_picture() {
             &[&["view", "pendulum", "--picture", &out, "--width", "64", "--height", "36"], extra].concat(),
         );
         assert_eq!(run.code, Some(0), "{run:?}");
-        std::fs::read(&out).expect("the picture is there")
+        std::fs::read(&out).expect("the picture exists")
     };
     let one = picture("a.png", &["--at", "0.5"]);
     assert_eq!(picture("b.png", &["--at", "0.5"]), one);
@@ -45,7 +45,7 @@ fn movie_has_twenty_pictures_per_second() {
     let object = sinew(&[&arguments[..], &["--json"]].concat()).json();
     check_keys("view", &object);
     assert!(object["at_s"].is_null(), "{object}");
-    let bytes = std::fs::read(&out).expect("the movie is there");
+    let bytes = std::fs::read(&out).expect("the movie exists");
     assert!(bytes.starts_with(b"GIF89a"));
     // Each picture starts with a graphic control extension of four bytes.
     let pictures = bytes.windows(3).filter(|window| *window == [0x21, 0xf9, 4]).count();
@@ -63,7 +63,7 @@ fn falling_world_file_is_drawn() {
         let out = folder.path("ball.png");
         let run = sinew(&["view", &file, "--picture", &out, "--at", at, "--width", "64", "--height", "36"]);
         assert_eq!(run.code, Some(0), "{run:?}");
-        std::fs::read(&out).expect("the picture is there")
+        std::fs::read(&out).expect("the picture exists")
     };
     assert_ne!(picture("0"), picture("0.4"));
     let refused = sinew(&["view", &file, "--picture", &folder.path("x.png"), "--set", "a=1"]);
@@ -100,7 +100,7 @@ fn undrawable_input_is_a_usage_error() {
 
 /// Size of a file, bytes.
 fn size(path: &str) -> u64 {
-    std::fs::metadata(path).expect("the picture is there").len()
+    std::fs::metadata(path).expect("the picture exists").len()
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn a_character_is_drawn_with_its_clip() {
         let arguments = ["view", &file, "--picture", &out, "--width", "160", "--height", "90", "--json"];
         let object = sinew(&[&arguments[..], extra].concat()).json();
         check_keys("view", &object);
-        (object, std::fs::read(&out).expect("the picture is there"))
+        (object, std::fs::read(&out).expect("the picture exists"))
     };
     let (first, picture) = draw("a.png", &[]);
     assert_eq!(first["clip"], "Walk");
@@ -137,7 +137,7 @@ fn a_skeleton_without_a_mesh_is_drawn_as_bones() {
     let (movie, empty) = (folder.path("walk.gif"), folder.path("empty.png"));
     let object = sinew(&[&["view", &bvh, "--movie", &movie, "--json"], &small[..]].concat()).json();
     assert!((object["seconds"].as_f64().expect("a time") - 32.0 / 30.0).abs() < 0.02, "{object}");
-    let bytes = std::fs::read(&movie).expect("the movie is there");
+    let bytes = std::fs::read(&movie).expect("the movie exists");
     let pictures = bytes.windows(3).filter(|window| *window == [0x21, 0xf9, 4]).count();
     assert_eq!(pictures, 22);
     let nothing = folder.file("nothing.gltf", r#"{"asset":{"version":"2.0"}}"#);

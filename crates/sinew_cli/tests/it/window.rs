@@ -129,7 +129,7 @@ fn window_opens_and_the_mouse_pulls_a_body() {
         display.xdotool(&["key", "F12"]);
         let line = viewer.wait_for("wrote");
         let name = line.strip_prefix("wrote ").expect("the name follows").to_owned();
-        let bytes = std::fs::read(folder.path(&name)).expect("the picture is there");
+        let bytes = std::fs::read(folder.path(&name)).expect("the picture exists");
         assert!(bytes.starts_with(b"\x89PNG"));
         (name, bytes)
     };
@@ -153,8 +153,10 @@ fn window_opens_and_the_mouse_pulls_a_body() {
 
 /// Reads the written ragdoll and returns the largest swing about z of its left upper arm, degrees.
 fn swing(path: &str) -> f32 {
-    let def = read_ragdoll(&std::fs::read(path).expect("it is there")).expect("it is a ragdoll");
-    let arm = def.bodies.iter().position(|body| body.role == "leftUpperArm").expect("it has one");
+    let def =
+        read_ragdoll(&std::fs::read(path).expect("the file can be read")).expect("the file is a ragdoll");
+    let arm =
+        def.bodies.iter().position(|body| body.role == "leftUpperArm").expect("the ragdoll has this body");
     let joint = def.joints.iter().find(|joint| joint.child == arm).expect("the arm has a joint");
     let [_, Some(z), _] = sinew_viewer::limits(&joint.kind) else {
         panic!("the arm's joint has a swing limit")
@@ -223,7 +225,7 @@ fn one_command_writes_a_picture_of_the_window() {
     let out = folder.path("window.png");
     let output_text = run(&out);
     assert_eq!(output_text.code, Some(0), "{output_text:?}");
-    assert!(std::fs::read(&out).expect("it is there").starts_with(b"\x89PNG"));
+    assert!(std::fs::read(&out).expect("the file can be read").starts_with(b"\x89PNG"));
     let refused = run(&folder.path("nowhere/window.png"));
     // Libraries of the system may print lines before.
     let line = refused.stderr.lines().last().expect("there is a line on stderr");

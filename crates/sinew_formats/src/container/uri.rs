@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn base64_goes_round_for_every_tail_length() {
+    fn base64_round_trips_for_every_tail_length() {
         for n in 0..8_u8 {
             let bytes: Vec<u8> = (0..n).map(|i| i.wrapping_mul(83)).collect();
             let Ok(Uri::Data(back)) = parse(&encode_data(&bytes)) else { panic!("{n} bytes") };
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn paths_stay_in_the_folder() {
+    fn paths_out_of_the_folder_are_rejected() {
         for bad in [
             "../x",
             "a/../../x",

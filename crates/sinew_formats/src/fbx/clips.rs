@@ -120,10 +120,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keys_before_the_take_give_way_to_the_value_at_its_start() {
+    fn keys_before_the_take_are_replaced_by_its_first_value() {
         let key = |time: f64, x: f32| (time, [x]);
         let cut = |keys: &[(f64, [f32; 1])]| {
-            let channel = channel(0, Property::Scale, keys.iter().copied()).expect("it has keys");
+            let channel = channel(0, Property::Scale, keys.iter().copied()).expect("the channel has keys");
             (channel.times, channel.values)
         };
         assert_eq!(cut(&[key(-3.0, 9.0), key(-1.0, 1.0), key(3.0, 5.0)]), (vec![0.0, 3.0], vec![2.0, 5.0]));

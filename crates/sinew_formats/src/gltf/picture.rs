@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn every_kind_of_png_is_rgba() {
+    fn every_kind_of_png_decodes_to_rgba() {
         let (eight, sixteen) = (BitDepth::Eight, BitDepth::Sixteen);
         type Case = (ColorType, BitDepth, Option<&'static [u8]>, &'static [u8], [u8; 8]);
         let cases: &[Case] = &[
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn jpegs_in_colour_and_grey_are_rgba() {
+    fn colour_and_grey_jpegs_decode_to_rgba() {
         for (hex, expected) in [(RED, [200, 40, 20, 255]), (GREY, [90, 90, 90, 255])] {
             let image = decode_picture(&bytes(hex), 1000).unwrap();
             assert_eq!((image.width, image.height), (8, 8));
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn oversized_and_invalid_pictures_are_refused() {
+    fn oversized_and_invalid_pictures_are_rejected() {
         let refused = |bytes: &[u8], budget| decode_picture(bytes, budget).unwrap_err();
         assert_eq!(refused(&bytes(RED), 255), "8 x 8 pixels, more than all pictures of a file may take");
         assert_eq!(refused(b"BM", 1000), "neither PNG nor JPEG");

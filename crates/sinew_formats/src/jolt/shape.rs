@@ -126,7 +126,7 @@ fn outline(shape: &Shape) -> Vec<Vec3> {
             [(-half_height, radius_bottom), (half_height, radius_top)]
         }
         Shape::Sphere { radius } => [(0.0, radius); 2],
-        _ => unreachable!("these are all that is read"),
+        _ => unreachable!("the reader accepts no other solid"),
     };
     let mut points = Vec::new();
     for (y, radius) in balls {

@@ -228,9 +228,9 @@ impl<'a> Reading<'a, '_> {
 /// Checks that a solid body can have this mass and inertia.
 pub(crate) fn check_mass(mass: &MassProperties) -> core::result::Result<(), &'static str> {
     let moments = mass.inertia.eigen().0;
-    // The comparison is false for NaN.
+    // The comparison is false for NaN, so NaN is rejected.
     if !(mass.mass > 0.0 && moments.z > 0.0 && mass.mass.is_finite() && moments.is_finite()) {
-        return Err("mass and inertia of what moves must be positive, and finite");
+        return Err("mass and inertia of a moving body must be positive and finite");
     }
     if moments.x > 1.001 * (moments.y + moments.z) {
         return Err("no solid has this inertia: one moment is larger than the sum of the others");

@@ -30,7 +30,7 @@
 //! let model = read_mjcf(text.as_bytes())?;
 //! let mut world = World::new(WorldDef::default());
 //! let bodies = model.spawn(&mut world).bodies;
-//! let bob = bodies[model.body("bob").expect("it has one")];
+//! let bob = bodies[model.body("bob").expect("the model has this body")];
 //! assert_eq!(world.mass(bob).mass, 1.0);
 //! assert!((world.transform(bob).translation.y - 2.0).abs() < 1e-6); // z up became y up
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -19,7 +19,7 @@
 //!     "extensions": {"OMI_physics_shape": {"shapes": [{"type": "sphere", "sphere": {"radius": 0.5}}]}}}"#;
 //! let model = read_physics_gltf(text.as_bytes())?;
 //! let mut world = World::new(WorldDef::default());
-//! let ball = model.spawn(&mut world).bodies[model.body("ball").expect("it has one")];
+//! let ball = model.spawn(&mut world).bodies[model.body("ball").expect("the model has this body")];
 //! assert_eq!((world.mass(ball).mass, world.transform(ball).translation.y), (2.0, 3.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -511,11 +511,11 @@ mod tests {
             {"angularAxes": [1, 2], "max": 0.4}, {"angularAxes": [0], "min": -0.1, "max": 0.2}]}]}}}"#;
 
     #[test]
-    fn bodies_shapes_and_joints_of_omi_are_there() {
-        let model = read_physics_gltf(ROPE.as_bytes()).expect("it is sound");
+    fn omi_bodies_shapes_and_joints_are_read() {
+        let model = read_physics_gltf(ROPE.as_bytes()).expect("the file is valid");
         assert_eq!(model.bodies.len(), 3);
         let bob = &model.bodies[2].def;
-        assert_eq!(bob.mass.expect("it is given").mass, 3.0);
+        assert_eq!(bob.mass.expect("the mass is given").mass, 3.0);
         let Shape::Capsule { half_height, radius } = bob.shapes[0].shape else { panic!("{:?}", bob.shapes) };
         assert!((half_height - 0.5).abs() < 1e-6 && (radius - 0.1).abs() < 1e-6, "twice its size");
         let JointKind::Ball { limit: Some(limit) } = model.joints[0].kind else {
@@ -529,25 +529,27 @@ mod tests {
     }
 
     #[test]
-    fn a_ragdoll_that_was_written_comes_back() {
+    fn written_ragdoll_reads_back_equal() {
         let def = sinew::mannequin::character();
-        let bytes = write_gltf(&def.rig, &[]).expect("it can be written");
+        let bytes = write_gltf(&def.rig, &[]).expect("the rig can be written as glTF");
         let document = read_gltf(&bytes, ReadOptions::default(), &mut no_files).expect("and read");
-        let analysis = sinew_anim::analyze(&document.rig).expect("it has a skin");
-        let ragdoll = def.ragdoll.clone().for_rig(&document.rig).expect("it is its own");
-        let written = write_khr(&document, &analysis.bind_model, &ragdoll).expect("it has no physics yet");
-        let model = read_physics_gltf(&written.bytes).expect("it is sound");
+        let analysis = sinew_anim::analyze(&document.rig).expect("the rig has a skin");
+        let ragdoll = def.ragdoll.clone().for_rig(&document.rig).expect("the ragdoll fits the rig");
+        let written =
+            write_khr(&document, &analysis.bind_model, &ragdoll).expect("the file has no physics yet");
+        let model = read_physics_gltf(&written.bytes).expect("the file is valid");
         assert_eq!(model.bodies.len(), ragdoll.bodies.len() + 1);
         for body in &ragdoll.bodies {
             let own = &model.bodies[model.body(&body.bone).expect("by its name")].def;
-            assert!((own.mass.expect("it is given").mass - body.mass.mass).abs() < 1e-4);
+            assert!((own.mass.expect("the mass is given").mass - body.mass.mass).abs() < 1e-4);
             assert_eq!(own.shapes.len(), 1);
         }
         let names =
             |joint: &MjcfJoint| [joint.parent, joint.child].map(|body| model.bodies[body].name.clone());
         for joint in &ragdoll.joints {
             let own = [joint.parent, joint.child].map(|body| ragdoll.bodies[body].bone.clone());
-            let there = model.joints.iter().find(|other| names(other) == own).expect("it is there");
+            let there =
+                model.joints.iter().find(|other| names(other) == own).expect("the model has this joint");
             let widest = |kind: &JointKind| match kind {
                 JointKind::Ball { limit: Some(limit) } => limit.swing_y.hi,
                 JointKind::Hinge { limit: Some(range) } => range.hi,

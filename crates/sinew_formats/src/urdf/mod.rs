@@ -27,7 +27,7 @@
 //! let model = read_urdf(text.as_bytes())?;
 //! let mut world = World::new(WorldDef::default());
 //! let bodies = model.spawn(&mut world).bodies;
-//! let arm = bodies[model.body("arm").expect("it has one")];
+//! let arm = bodies[model.body("arm").expect("the model has this body")];
 //! assert!((world.center_of_mass(arm).y - 1.5).abs() < 1e-5); // z up became y up
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -410,8 +410,8 @@ mod tests {
         <joint name="end" type="fixed"><parent link="upper"/><child link="tip"/><origin xyz="0.4 0 0"/></joint></robot>"#;
 
     #[test]
-    fn links_joints_limits_and_masses_are_those_of_the_file() {
-        let model = read_urdf(ARM.as_bytes()).expect("it is sound");
+    fn links_joints_limits_and_masses_match_the_file() {
+        let model = read_urdf(ARM.as_bytes()).expect("the file is valid");
         let names: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
         assert_eq!(names, ["world", "base", "upper", "tip"]);
         let shoulder = &model.joints[0];

@@ -54,7 +54,7 @@ pub struct UsdInput<'a> {
 /// # Panics
 /// If the clip or the ragdoll does not belong to the rig, or `fps` is below 1.
 pub fn write_usda(input: &UsdInput<'_>) -> UsdText {
-    assert!(input.fps >= 1.0, "at least one frame a second");
+    assert!(input.fps >= 1.0, "fps must be at least 1");
     let mut writer = Writer { out: String::new(), notes: Vec::new() };
     let last = (input.clip.duration * input.fps).round();
     writer.line(0, "#usda 1.0");

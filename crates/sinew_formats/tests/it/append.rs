@@ -67,7 +67,7 @@ fn assert_kept(old: &Value, new: &Value, path: &str, allowed: &dyn Fn(&str) -> b
 
 #[needs_data]
 #[test]
-fn appending_keeps_the_old_file() {
+fn appending_keeps_the_old_content() {
     let data = shared_data();
     for path in files(&data.join("rigs"), &GLTF) {
         let old = load_gltf(&path, ReadOptions::default()).unwrap();
@@ -111,7 +111,7 @@ fn shift(joint: usize, to: [f32; 3]) -> Channel {
 }
 
 #[test]
-fn a_matrix_is_replaced_only_if_the_clip_moves_its_node() {
+fn matrix_is_replaced_only_if_the_clip_moves_its_node() {
     let document = read_gltf(WITH_MATRIX.as_bytes(), ReadOptions::default(), &mut no_files).unwrap();
     let still =
         Clip { channels: vec![shift(0, [5.0, 6.0, 7.0]), shift(1, [1.0, 0.0, 0.0])], ..Clip::default() };
@@ -129,7 +129,7 @@ fn a_matrix_is_replaced_only_if_the_clip_moves_its_node() {
 }
 
 #[test]
-fn numbers_keep_every_digit() {
+fn numbers_are_copied_with_every_digit() {
     let text = r#"{"asset":{"version":"2.0","extras":[0.10000000149011612,1e-45,123456789012345678,
         2.2250738585072011e-308,-0.0,9007199254740993]},"nodes":[{}]}"#;
     let document = read_gltf(text.as_bytes(), ReadOptions::default(), &mut no_files).unwrap();
@@ -142,7 +142,7 @@ fn numbers_keep_every_digit() {
 }
 
 #[test]
-fn a_clip_without_motion_is_refused_in_one_line() {
+fn clip_without_motion_is_rejected_in_one_line() {
     let document = read_gltf(WITH_MATRIX.as_bytes(), ReadOptions::default(), &mut no_files).unwrap();
     let error = append_clip(&document, &Clip::default(), "", None).unwrap_err();
     assert_eq!(error.to_string(), "the clip moves nothing: there is no channel to write (animations)");
@@ -225,7 +225,7 @@ fn inferred_weights_of_loose_vertices_are_written() {
 }
 
 #[test]
-fn a_clip_with_keys_before_zero_begins_at_zero() {
+fn clip_with_keys_before_zero_starts_at_zero() {
     let mannequin = sinew::mannequin::mannequin();
     let mut clip = mannequin.clips[0].clone();
     let (duration, first) = (clip.duration, clip.channels[0].times[0]);

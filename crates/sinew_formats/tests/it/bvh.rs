@@ -103,7 +103,7 @@ fn every_order_of_every_number_of_channels_is_read() {
 }
 
 #[test]
-fn white_space_case_and_line_ends_do_not_matter() {
+fn white_space_case_and_line_ends_are_ignored() {
     let expected = read(TWO_JOINTS);
     let variants = [
         TWO_JOINTS.replace('\n', "\r\n"),
@@ -121,7 +121,7 @@ fn white_space_case_and_line_ends_do_not_matter() {
 }
 
 #[test]
-fn positions_may_stand_at_any_joint_and_count_from_either_place() {
+fn positions_of_any_joint_are_read_in_both_conventions() {
     let text = |position: &str| {
         format!(
             "HIERARCHY ROOT a {{ OFFSET 0 0 0 CHANNELS 3 Zrotation Yrotation Xrotation
@@ -138,7 +138,7 @@ fn positions_may_stand_at_any_joint_and_count_from_either_place() {
 }
 
 #[test]
-fn complaints_name_the_line() {
+fn errors_name_the_line() {
     let replaced = |from: &str, to: &str| complaint(&TWO_JOINTS.replacen(from, to, 1));
     for (from, to, expected) in [
         ("HIERARCHY", "hello", "not a BVH file: does not begin with `HIERARCHY` (line 1)"),
@@ -184,7 +184,7 @@ fn missing_and_extra_rows_are_reported() {
 }
 
 #[test]
-fn a_hundred_thousand_nested_joints_are_read_and_written() {
+fn file_with_100_000_nested_joints_round_trips() {
     const DEEP: usize = 100_000;
     let text = format!(
         "HIERARCHY ROOT r {{ OFFSET 0 0 0 CHANNELS 1 Xrotation {} {} }} MOTION Frames: 1 Frame Time: 1\n7",
@@ -219,7 +219,7 @@ fn units_follow_from_bone_lengths() {
 
 #[needs_data]
 #[test]
-fn the_rest_pose_before_a_motion_is_found() {
+fn rest_pose_before_a_motion_is_found() {
     let found = shared("cmu_12_01_walk.bvh", BvhOptions::default());
     assert_eq!((found.frames, found.clip.channels[0].times.len()), (523, 523));
     assert!(found.rest_pose.is_some());
@@ -357,7 +357,7 @@ fn random_motions_round_trip() {
 /// Joints of a glTF rig have their own rest axes; in the file they have those of the model.
 #[needs_data]
 #[test]
-fn a_rig_with_turned_joints_keeps_its_motion() {
+fn rig_with_rotated_joints_keeps_its_motion() {
     let data = shared_data();
     let path = data.join("rigs/CesiumMan.glb");
     let document = sinew_formats::load_gltf(path, sinew_formats::ReadOptions::default()).unwrap();
@@ -381,7 +381,7 @@ fn a_rig_with_turned_joints_keeps_its_motion() {
 }
 
 #[test]
-fn writing_refuses_invalid_clips() {
+fn invalid_clips_are_not_written() {
     let (rig, clip, layout) = random_motion(&mut Random::new(1));
     let with = |options: BvhWriteOptions<'_>| write_bvh(&rig, &clip, &options).unwrap_err().to_string();
     let plain = BvhWriteOptions::default;
@@ -429,7 +429,7 @@ fn read_and_check(bytes: &[u8]) -> Option<String> {
 
 #[needs_data]
 #[test]
-fn a_file_cut_anywhere_is_refused() {
+fn truncated_file_is_rejected() {
     let end = TWO_JOINTS.trim_end().len();
     for length in 0..end {
         // If only the last number loses digits, the file remains valid.
@@ -454,7 +454,7 @@ fn a_file_cut_anywhere_is_refused() {
 
 /// Changes random bytes: 10,000 cases with `SINEW_FULL` set, otherwise a tenth.
 #[test]
-fn mutated_files_do_no_harm() {
+fn mutated_files_do_not_panic() {
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 10_000 } else { 1000 };
     let mut whole = vec![TWO_JOINTS.as_bytes().to_vec()];
     let data = shared_data();

@@ -27,7 +27,7 @@ fn heights(character: &DeepMimicCharacter, clip: &sinew_anim::Clip, time: f32) -
 
 #[needs_data]
 #[test]
-fn clips_are_what_the_manifest_says() {
+fn clips_match_the_manifest() {
     let character = humanoid();
     assert_eq!(character.rig.joints.len(), 15);
     for (name, frames, duration, wrap) in
@@ -46,7 +46,7 @@ fn clips_are_what_the_manifest_says() {
 /// The get-up starts on the back and ends on the feet; in the run only the feet touch the ground.
 #[needs_data]
 #[test]
-fn bodies_are_where_they_should_be() {
+fn heights_of_joints_match_the_motion() {
     let character = humanoid();
     let up = read_deepmimic(&bytes("deepmimic_getup_faceup.txt"), &character).unwrap().clip;
     let place = |name: &str| character.rig.joints.iter().position(|joint| joint.name == name).unwrap();
@@ -63,7 +63,7 @@ fn bodies_are_where_they_should_be() {
 }
 
 #[test]
-fn a_hinge_turns_about_z() {
+fn hinge_rotates_about_z() {
     let character = br#"{"Skeleton":{"Joints":[
         {"Name":"root","Type":"none","Parent":-1,"AttachX":0,"AttachY":0,"AttachZ":0,
          "AttachThetaX":0,"AttachThetaY":0,"AttachThetaZ":0},
@@ -78,7 +78,7 @@ fn a_hinge_turns_about_z() {
 
 #[needs_data]
 #[test]
-fn complaints_name_the_place() {
+fn errors_name_the_place() {
     let character = humanoid();
     for (text, expected) in [
         (r#"{"Frames":[]}"#, "no frames (Frames)"),
@@ -105,7 +105,7 @@ fn complaints_name_the_place() {
 /// Cuts and changes files at random offsets: the result is an error or a clip, never a panic.
 #[needs_data]
 #[test]
-fn mutated_files_do_no_harm() {
+fn mutated_files_do_not_panic() {
     let character = humanoid();
     let (whole, skeleton) = (bytes("deepmimic_run.txt"), bytes("deepmimic_humanoid3d.txt"));
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 2000 } else { 200 };

@@ -209,7 +209,7 @@ fn oversized_counts_allocate_nothing() {
 }
 
 #[test]
-fn mutated_streams_do_no_harm() {
+fn mutated_streams_do_not_panic() {
     let mut random = Random::new(11);
     for method in [0, 1] {
         let whole = stream(method);
@@ -240,7 +240,7 @@ fn peak(call: impl FnOnce()) -> u64 {
 
 #[needs_data]
 #[test]
-fn the_compressed_rigs_of_shared_are_read() {
+fn compressed_public_rigs_are_read() {
     let data = shared_data();
     for (file, vertices, triangles) in [
         ("Astronaut_RaeTheRedPanda", 5382, 17052 / 3),
@@ -272,7 +272,7 @@ fn the_compressed_rigs_of_shared_are_read() {
 
 /// Seeds of the fuzzer: a stream of each method, after the counts declared by its file.
 #[test]
-fn seeds_of_the_fuzzer_are_whole_files() {
+fn fuzzer_seeds_are_readable_streams() {
     for (method, name) in [(0, "sequential"), (1, "edgebreaker")] {
         let path = format!("{}/../../fuzz/seeds/draco/{name}.bin", env!("CARGO_MANIFEST_DIR"));
         if std::env::var_os("SINEW_BLESS").is_some() {

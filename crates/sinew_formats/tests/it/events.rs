@@ -42,7 +42,7 @@ fn events_are_sorted_by_time() {
 }
 
 #[test]
-fn wrong_values_are_refused_with_their_place() {
+fn invalid_values_are_rejected_with_their_place() {
     let refused = |text: &str, what: &str, place: &str| {
         let error = read_events(text.as_bytes(), &clips()).unwrap_err();
         assert!(error.what.contains(what) && error.where_ == place, "{text}: {error}");
@@ -69,7 +69,7 @@ fn wrong_values_are_refused_with_their_place() {
 }
 
 #[test]
-fn every_cut_is_refused() {
+fn every_truncation_is_rejected() {
     let text = write_events(&clips(), &[vec![punch()], vec![], vec![], vec![]]);
     for length in 0..text.trim_end().len() {
         let error = read_events(&text.as_bytes()[..length], &clips()).unwrap_err();
@@ -79,7 +79,7 @@ fn every_cut_is_refused() {
 }
 
 #[test]
-fn extras_of_an_animation() {
+fn events_in_animation_extras_are_read() {
     let (rig, clip) = bar();
     let bytes = write_motion(&rig, std::slice::from_ref(&clip), &[vec![punch()]]).unwrap();
     let document = read_gltf(&bytes, ReadOptions::default(), &mut no_files).unwrap();

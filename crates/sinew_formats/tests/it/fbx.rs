@@ -20,7 +20,7 @@ fn near(a: Vec3, b: Vec3) {
 }
 
 #[test]
-fn joints_stand_in_metres_with_y_up() {
+fn joints_are_converted_to_metres_and_y_up() {
     let file = read_fbx(leg().as_bytes()).unwrap();
     let joints: Vec<(&str, Option<usize>)> =
         file.rig.joints.iter().map(|joint| (joint.name.as_str(), joint.parent)).collect();
@@ -38,7 +38,7 @@ fn joints_stand_in_metres_with_y_up() {
 }
 
 #[test]
-fn the_thigh_turns_evenly() {
+fn thigh_rotates_evenly() {
     let file = read_fbx(leg().as_bytes()).unwrap();
     assert_eq!((file.clips.len(), file.clips[0].name.as_str(), file.clips[0].duration), (1, "bend", 1.0));
     let shank = file.rig.joints.iter().position(|joint| joint.name == "shank").unwrap();
@@ -51,7 +51,7 @@ fn the_thigh_turns_evenly() {
 }
 
 #[test]
-fn the_skin_follows_its_bones() {
+fn skin_follows_its_bones() {
     let file = read_fbx(leg().as_bytes()).unwrap();
     let rig = &file.rig;
     assert_eq!((rig.meshes.len(), rig.skins.len(), rig.meshes[0].skin), (1, 1, Some(0)));
@@ -80,7 +80,7 @@ fn the_skin_follows_its_bones() {
 }
 
 #[test]
-fn a_truncated_file_does_not_panic() {
+fn truncated_file_does_not_panic() {
     let text = leg();
     let mut refused = 0;
     for length in 0..text.len() {
@@ -94,7 +94,7 @@ fn a_truncated_file_does_not_panic() {
 }
 
 #[test]
-fn garbage_does_not_panic() {
+fn random_bytes_do_not_panic() {
     let text = leg().into_bytes();
     let mut random = Random::new(0xFB);
     for _ in 0..300 {
@@ -124,7 +124,7 @@ const RED: [u8; 70] = [
 ];
 
 #[test]
-fn a_material_has_its_colour_and_its_picture() {
+fn material_keeps_its_colour_and_picture() {
     let png = RED.to_vec();
     let decode = ReadOptions { textures: Textures::Decode };
     let missing = |_: &str| Err(Error::io("no such file"));

@@ -204,8 +204,8 @@ fn formats_table_is_up_to_date() {
     clip_rows(&mut table, &data.join("rigs"));
     table.push_str(END);
     let page = std::fs::read_to_string(PAGE).unwrap();
-    let (before, rest) = page.split_once(START).expect("the mark where the table starts");
-    let (_, after) = rest.split_once(END).expect("the mark where the table ends");
+    let (before, rest) = page.split_once(START).expect("the page marks the start of the table");
+    let (_, after) = rest.split_once(END).expect("the page marks the end of the table");
     let wanted = format!("{before}{table}{after}");
     if std::env::var_os("UPDATE_EXPECT").is_some() {
         std::fs::write(PAGE, wanted).unwrap();

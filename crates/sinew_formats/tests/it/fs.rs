@@ -13,7 +13,7 @@ fn folder(name: &str) -> PathBuf {
 }
 
 #[test]
-fn a_write_replaces_and_leaves_nothing_beside_it() {
+fn write_replaces_the_file_and_leaves_no_temporary() {
     let folder = folder("write");
     let path = folder.join("a.json");
     write_atomic(&path, b"one").unwrap();
@@ -97,7 +97,7 @@ fn missing_files_and_folders_are_named() {
 
 #[cfg(unix)]
 #[test]
-fn a_link_out_of_the_folder_is_not_followed() {
+fn link_out_of_the_folder_is_not_followed() {
     let folder = folder("jail");
     let inside = folder.join("inside");
     fs::create_dir(&inside).unwrap();

@@ -44,7 +44,7 @@ fn strips_and_fans_keep_their_winding() {
 }
 
 #[test]
-fn indices_of_every_width_agree() {
+fn indices_of_every_width_give_the_same_triangles() {
     for (component, index) in [
         (5121, vec![3, 1, 0]),
         (5123, vec![3, 0, 1, 0, 0, 0]),
@@ -63,7 +63,7 @@ fn indices_of_every_width_agree() {
 }
 
 #[test]
-fn interleaved_and_sparse_positions_are_found() {
+fn interleaved_and_sparse_positions_are_read() {
     let mut bytes = Vec::new();
     for p in SQUARE {
         bytes.extend(floats(&[p]));
@@ -97,7 +97,7 @@ fn rig(json: &str) -> Rig {
 }
 
 #[test]
-fn a_node_matrix_becomes_the_same_map() {
+fn node_matrix_becomes_an_equal_transform() {
     let rig = rig(r#"{"asset":{"version":"2.0"},"nodes":[
         {"matrix":[0,2,0,0, -3,0,0,0, 0,0,-4,0, 5,6,7,1]}]}"#);
     let map: Affine = rig.joints[0].rest.to_affine();
@@ -109,7 +109,7 @@ fn a_node_matrix_becomes_the_same_map() {
 }
 
 #[test]
-fn only_the_default_scene_is_read_but_every_joint_of_a_skin() {
+fn default_scene_and_all_skin_joints_are_read() {
     let rig = rig(r#"{"asset":{"version":"2.0"},"scene":1,"scenes":[{"nodes":[0]},{"nodes":[2]}],
         "skins":[{"joints":[4]}],
         "nodes":[{"name":"other"},{"name":"leaf","rotation":[0,0,0.6,0.8]},{"name":"root","children":[1]},

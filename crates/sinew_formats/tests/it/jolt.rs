@@ -172,7 +172,7 @@ fn close(a: Vec3, b: Vec3) {
 }
 
 #[test]
-fn a_small_ragdoll_is_read_as_it_is_written() {
+fn small_ragdoll_matches_its_file() {
     let JoltRagdoll { rig, def, motors } = read_jolt_ragdoll(SMALL.as_bytes()).unwrap();
     assert_eq!(rig.joints.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>(), ["root", "tip"]);
     assert_eq!(rig.joints[1].parent, Some(0));
@@ -196,7 +196,7 @@ fn a_small_ragdoll_is_read_as_it_is_written() {
     let JointKind::Ball { limit: Some(limit) } = joint.kind else { panic!("{:?}", joint.kind) };
     assert_eq!((limit.swing_y.hi, limit.swing_z.hi), (0.25, 0.5));
     assert_eq!((limit.twist.lo, limit.twist.hi, joint.friction_torque), (-0.125, 0.375, 2.5));
-    let motor = motors[1].expect("it has a motor");
+    let motor = motors[1].expect("the joint has a motor");
     assert_eq!((motor.hertz, motor.damping_ratio, motor.max_torque), (20.0, 2.0, 500.0));
 }
 
@@ -212,7 +212,7 @@ fn animation(times: [f32; 2]) -> String {
 }
 
 #[test]
-fn an_animation_is_keys_by_joint() {
+fn animation_is_read_as_keys_per_joint() {
     let rig = read_jolt_ragdoll(SMALL.as_bytes()).unwrap().rig;
     let clip = read_jolt_animation(animation([0.0, 0.5]).as_bytes(), &rig).unwrap();
     assert_eq!(clip.duration, 0.5);
@@ -259,7 +259,7 @@ fn errors_name_their_line() {
 }
 
 #[test]
-fn every_prefix_and_every_changed_byte_gives_an_answer() {
+fn prefixes_and_changed_bytes_give_results_or_errors() {
     for length in 0..SMALL.len() - 1 {
         assert!(read_jolt_ragdoll(&SMALL.as_bytes()[..length]).is_err() || length + 4 > SMALL.len());
     }
@@ -287,7 +287,7 @@ fn human(clip: &str) -> (JoltRagdoll, Clip) {
 
 #[needs_data]
 #[test]
-fn jolts_human_is_whole() {
+fn jolts_human_is_read_completely() {
     let (JoltRagdoll { rig, def, motors }, clip) = human("walk.tof");
     assert_eq!((def.bodies.len(), def.joints.len(), rig.joints.len()), (23, 22, 23));
     assert!(motors[1..].iter().all(|motor| motor.is_some_and(|motor| motor.hertz == 20.0)));

@@ -97,7 +97,7 @@ fn cosmetic_values_are_replaced_with_a_note() {
 }
 
 #[test]
-fn nonfinite_weights_come_from_the_nearest_skin() {
+fn nonfinite_weights_are_replaced_by_those_of_the_nearest_skin() {
     let mut lost = weights();
     lost[20..24].fill(NAN);
     // One of several weights is not finite; the others remain.
@@ -114,7 +114,7 @@ fn nonfinite_weights_come_from_the_nearest_skin() {
 }
 
 #[test]
-fn positions_matter_where_a_triangle_uses_them() {
+fn nonfinite_positions_are_rejected_only_in_triangles() {
     let spare = file(&[("POSITION", 3, spoilt(positions(), 18, NAN)), ("WEIGHTS_0", 4, weights())]).unwrap();
     let part = &spare.rig.meshes[0].primitives[0];
     assert_eq!(part.positions[6], part.positions[0], "inside the body");
@@ -126,7 +126,7 @@ fn positions_matter_where_a_triangle_uses_them() {
 
 #[needs_data]
 #[test]
-fn the_rigs_of_shared_with_lost_weights_are_read() {
+fn public_rigs_with_lost_weights_are_read() {
     let data = shared_data();
     for (file, notes) in [
         ("easy_enemies_Wasp", 2),

@@ -184,7 +184,7 @@ fn quantized_numbers_decode_exactly() {
 }
 
 #[test]
-fn compressed_files_are_the_plain_ones() {
+fn compressed_files_equal_the_uncompressed_ones() {
     let (root, bin, _) = file(Storage::Plain, 0);
     let plain = read(&glb(&root, &bin)).unwrap();
     for (storage, version) in [(Storage::Ext, 0), (Storage::Khr, 0), (Storage::Khr, 1)] {
@@ -273,7 +273,7 @@ fn filters_round_trip() {
 }
 
 #[test]
-fn sequences_and_random_triangles() {
+fn index_sequences_and_triangles_round_trip() {
     let mut random = Random::new(3);
     for size in [0, 3, 30, 300] {
         let indices: Vec<u32> = (0..size).map(|_| random.index(60) as u32).collect();
@@ -301,7 +301,7 @@ fn decoded(mode: &'static str, stream: &[u8], count: usize) -> Vec<u32> {
 }
 
 #[test]
-fn broken_streams_are_refused() {
+fn invalid_streams_are_rejected() {
     let (root, bin, _) = file(Storage::Ext, 0);
     let whole = glb(&root, &bin);
     let mut random = Random::new(11);

@@ -16,7 +16,7 @@ fn humanoid_text() -> String {
 }
 
 fn humanoid() -> MjcfModel {
-    read_mjcf(humanoid_text().as_bytes()).expect("it is read")
+    read_mjcf(humanoid_text().as_bytes()).expect("the model can be read")
 }
 
 /// Converts from MuJoCo's axes to ours.
@@ -79,7 +79,7 @@ fn humanoid_bodies_match_mujoco() {
 /// Compares the full tensors of two bodies whose principal axes are not the frame's with MuJoCo 4.0.0.
 #[needs_data]
 #[test]
-fn inertia_is_turned_like_the_body() {
+fn inertia_is_rotated_with_the_body() {
     let model = humanoid();
     // Diagonal and (yz, xz, xy), in our axes.
     for (name, diagonal, off) in [
@@ -96,7 +96,7 @@ fn inertia_is_turned_like_the_body() {
 
 fn joint<'a>(model: &'a MjcfModel, child: &str) -> &'a MjcfJoint {
     let child = model.body(child).expect("the body is there");
-    model.joints.iter().find(|joint| joint.child == child).expect("it has a joint")
+    model.joints.iter().find(|joint| joint.child == child).expect("the body has a joint to its parent")
 }
 
 #[needs_data]
@@ -317,7 +317,7 @@ fn on_hinges(axes: &[Vec3], angles: &[f32], range: [f32; 2]) -> MjcfModel {
 }
 
 #[test]
-fn two_hinges_are_one_swing_and_one_twist_exactly() {
+fn two_hinges_become_one_swing_and_one_twist() {
     let mut random = Random::new(11);
     for _ in 0..200 {
         let turn = random.rotation();
@@ -334,7 +334,7 @@ fn two_hinges_are_one_swing_and_one_twist_exactly() {
 }
 
 #[test]
-fn three_hinges_keep_their_ranges_one_by_one() {
+fn three_hinges_keep_their_separate_ranges() {
     let mut random = Random::new(12);
     for case in 0..300 {
         let (turn, hand) = (random.rotation(), [1.0, -1.0][case % 2]);
@@ -379,7 +379,7 @@ fn ranges_follow_compiler_reference_and_joint() {
 }
 
 #[test]
-fn the_nearest_nested_class_applies() {
+fn nearest_nested_class_applies() {
     let model = read(
         "<mujoco><default><geom size='.1'/><default class='a'><geom size='.2' type='capsule'/>
             <default class='b'><geom size='.3 .5'/></default></default></default>
@@ -394,7 +394,7 @@ fn the_nearest_nested_class_applies() {
 }
 
 #[test]
-fn shapes_meet_where_either_is_affine_to_the_other() {
+fn shapes_collide_if_either_filter_accepts_the_other() {
     let model = read(
         "<mujoco><worldbody><geom type='plane' size='0 0 1'/><body><freejoint/>
             <geom size='.1' contype='1' conaffinity='0'/><geom size='.1' contype='0' conaffinity='2'/>
@@ -416,7 +416,7 @@ fn complaint(contents: &str) -> String {
 }
 
 #[test]
-fn complaints_name_the_place() {
+fn errors_name_the_place() {
     let body = |contents: &str| format!("<worldbody><body>\n  {contents}</body></worldbody>");
     for (contents, expected) in [
         ("<wordbody/>".into(), "no section `wordbody` (line 2 column 1)"),
@@ -432,7 +432,10 @@ fn complaints_name_the_place() {
         (body("<joint axis='0 0 0'/>"), "`axis`: the vector has no direction (line 3 column 10)"),
         (body("<joint type='slid'/>"), "no joint of type `slid` (line 3 column 3)"),
         (body("<joint range='2 1'/>"), "`range`: the lower end is above the upper one (line 3 column 10)"),
-        (body("<joint/>"), "mass and inertia of what moves must be positive, and finite (line 2 column 12)"),
+        (
+            body("<joint/>"),
+            "mass and inertia of a moving body must be positive and finite (line 2 column 12)",
+        ),
         (
             body("<joint/><joint axis='1 0 1'/><geom size='1'/>"),
             "hinges of one body must be at right angles to each other (line 2 column 12)",
@@ -465,7 +468,7 @@ fn complaints_name_the_place() {
 
 /// Deeply nested files do not cause deep recursion.
 #[test]
-fn deep_nesting_is_refused_and_no_overflow() {
+fn deep_nesting_is_rejected_without_stack_overflow() {
     let nested = |tag: &str, end: &str, count: usize| tag.repeat(count) + &end.repeat(count);
     let bodies = nested("<body><joint/><geom size='1'/>", "</body>", 100_000);
     assert!(complaint(&format!("<worldbody>{bodies}</worldbody>")).contains("more than 1024 bodies"));
@@ -477,7 +480,7 @@ fn deep_nesting_is_refused_and_no_overflow() {
 }
 
 #[test]
-fn oversized_models_are_refused() {
+fn oversized_models_are_rejected() {
     let attributes: String = (0..2000).map(|i| format!(" a{i}=''")).collect();
     assert_eq!(complaint(&format!("<size{attributes}/>")), "more than 1000 attributes (line 2)");
     assert_eq!(complaint("<size xmlns:a='b'/>"), "XML namespaces are not read (line 2)");
@@ -507,7 +510,7 @@ fn read_and_try(bytes: &[u8]) -> Result<(), Error> {
 
 #[needs_data]
 #[test]
-fn every_prefix_of_the_humanoid_is_refused() {
+fn every_prefix_of_the_humanoid_is_rejected() {
     let text = humanoid_text();
     let text = text.trim_end();
     let step = if std::env::var_os("SINEW_FULL").is_some() { 1 } else { 37 };
@@ -520,7 +523,7 @@ fn every_prefix_of_the_humanoid_is_refused() {
 /// set, otherwise a hundredth.
 #[needs_data]
 #[test]
-fn mutated_humanoids_do_no_harm() {
+fn mutated_humanoids_do_not_panic() {
     const WORDS: [&str; 10] = ["0", "-1", "1e9", "1e-30", "nan", "1e40", "", "\"", "<body>", "0 0 0 0"];
     let text = humanoid_text();
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 10_000 } else { 100 };
@@ -552,13 +555,13 @@ fn mutated_humanoids_do_no_harm() {
 }
 
 #[test]
-fn a_free_body_is_placed_and_its_parts_follow() {
+fn free_body_is_placed_with_its_children() {
     let model = read(
         "<mujoco><worldbody><body name='a' pos='0 0 1'><freejoint/><geom size='.1'/>
             <body name='b' pos='1 0 0'><geom size='.1'/></body></body></worldbody>
         <keyframe><key name='k' qpos='1 2 3 0 0 0 2'/></keyframe></mujoco>",
     );
-    let pose = model.pose(model.keyframe("k").expect("it is there"));
+    let pose = model.pose(model.keyframe("k").expect("the model has this keyframe"));
     assert_close(pose[1].translation, y_up([1.0, 2.0, 3.0]), 1e-6, "a");
     // The pose after half a turn about the file's z.
     assert_close(pose[2].translation, y_up([0.0, 2.0, 3.0]), 1e-6, "b");
@@ -594,7 +597,7 @@ fn springs_and_slides_match_the_file() {
 fn contact_properties_match_the_file() {
     let material = |attributes: &str| {
         let model = one_body("", "", &format!("<geom size='.1' {attributes}/>"));
-        model.bodies.iter().flat_map(|body| &body.def.shapes).next().expect("it has a geom").material
+        model.bodies.iter().flat_map(|body| &body.def.shapes).next().expect("the model has a geom").material
     };
     assert_eq!(material("").friction, 1.0);
     let rubber = material("friction='.8 .01 .002' condim='6' solref='.02 .2'");

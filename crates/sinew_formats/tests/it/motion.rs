@@ -24,7 +24,7 @@ fn format_is_detected_from_bytes() {
 }
 
 #[test]
-fn a_clip_is_the_same_from_both_formats() {
+fn clip_is_equal_from_both_formats() {
     let (rig, clip) = bar();
     let glb = write_gltf(&rig, std::slice::from_ref(&clip)).unwrap();
     let from_glb = read_motion(&glb, &MotionOptions::default(), &mut no_files).unwrap();
@@ -42,14 +42,14 @@ fn a_clip_is_the_same_from_both_formats() {
 }
 
 #[test]
-fn a_deepmimic_clip_needs_its_character() {
+fn deepmimic_clip_without_its_character_is_rejected() {
     let clip = br#"{"Loop":"wrap","Frames":[[0.1]]}"#;
     let error = read_motion(clip, &MotionOptions::default(), &mut no_files).unwrap_err();
     assert!(error.kind == ErrorKind::Unsupported && error.what.contains("character"), "{error}");
 }
 
 #[test]
-fn a_vrm_animation_states_its_bones() {
+fn vrm_animation_has_the_roles_of_its_bones() {
     let json = r#"{"asset":{"version":"2.0"},"extensionsUsed":["VRMC_vrm_animation"],
         "nodes":[{"name":"a","children":[1]},{"name":"b"},{"name":"smile"}],
         "extensions":{"VRMC_vrm_animation":{"specVersion":"1.0","humanoid":{"humanBones":
@@ -78,7 +78,7 @@ fn every_captured_file_loads_by_one_function() {
 
 #[cfg(feature = "fs")]
 #[test]
-fn an_events_file_applies_to_the_clips_it_names() {
+fn events_file_applies_to_the_named_clips() {
     use sinew_formats::{events_path, load_motion, write_events, write_motion};
     let folder = std::env::temp_dir().join(format!("sinew-formats-events-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();

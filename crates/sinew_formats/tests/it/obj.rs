@@ -36,7 +36,7 @@ fn concave_faces_keep_their_area() {
 }
 
 #[test]
-fn wrong_lines_are_refused_with_their_number() {
+fn invalid_lines_are_rejected_with_their_number() {
     const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     let many = format!("{SQUARE}f{}\n", " 1".repeat(5000));
     for (text, expected) in [
@@ -83,7 +83,7 @@ fn twisted_faces_finish_quickly() {
 }
 
 #[test]
-fn a_trailing_backslash_does_not_continue_a_comment() {
+fn trailing_backslash_does_not_continue_a_comment() {
     let text = "# made from C:\\models\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\n  # \\\nf 1 \\\n2 \\\n3\n";
     let mesh = read_obj(text.as_bytes()).expect("a good file");
     assert_eq!((mesh.positions.len(), mesh.triangles), (3, vec![[0, 1, 2]]));
@@ -98,7 +98,7 @@ fn many_continued_lines_finish_quickly() {
 
 /// A star, in which every other corner is reflex, keeps its area.
 #[test]
-fn a_large_jagged_face_keeps_its_area() {
+fn large_jagged_face_keeps_its_area() {
     let corner = |k: usize| {
         let (sin, cos) = sinew_math::trig::sin_cos(k as f32 * core::f32::consts::TAU / 256.0);
         Vec3::new(cos, sin, 0.0) * if k.is_multiple_of(2) { 1.0 } else { 0.8 }

@@ -13,7 +13,7 @@ fn example() -> String {
 }
 
 #[test]
-fn the_documented_example_is_read() {
+fn documented_example_is_read() {
     let def = read_ragdoll(example().as_bytes()).unwrap();
     assert_eq!(def.bodies[1].merged, [6]);
     assert_eq!(def.joints[0].parent, 0);
@@ -108,7 +108,7 @@ fn zeros_keep_their_sign() {
 }
 
 #[test]
-fn round_angles_stay_short() {
+fn round_angles_are_written_with_few_digits() {
     let mut def = read_ragdoll(example().as_bytes()).unwrap();
     def.joints[0].kind = JointKind::Hinge { limit: Some(Range::degrees(-2.5, 140.0)) };
     let text = write_ragdoll(&def);
@@ -116,7 +116,7 @@ fn round_angles_stay_short() {
 }
 
 #[test]
-fn complaints_name_the_place() {
+fn errors_name_the_place() {
     let text = example();
     for (from, to, expected) in [
         (
@@ -172,7 +172,7 @@ fn complaints_name_the_place() {
 }
 
 #[test]
-fn bytes_changed_at_random_do_no_harm() {
+fn randomly_changed_bytes_do_not_panic() {
     let whole = example().into_bytes();
     let mut random = Random::new(5);
     for _ in 0..2000 {
@@ -190,7 +190,7 @@ fn bytes_changed_at_random_do_no_harm() {
 /// Wrong numbers in a whole body are rejected, or examined, fixed and written again.
 #[needs_data]
 #[test]
-fn wrong_values_are_refused_or_examined() {
+fn invalid_values_are_rejected_or_reported_by_the_doctor() {
     let data = crate::data::shared_data();
     let document = load_gltf(data.join("rigs/mannequiny.glb"), ReadOptions::default()).unwrap();
     let analysis = sinew_anim::analyze(&document.rig).unwrap();

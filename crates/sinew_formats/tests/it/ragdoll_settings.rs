@@ -12,7 +12,7 @@ fn example() -> String {
 }
 
 #[test]
-fn the_documented_example_is_read() {
+fn documented_example_is_read() {
     let settings = read_ragdoll_settings(example().as_bytes()).unwrap();
     assert_eq!((settings.shapes, settings.mass), (Some(ShapeChoice::Auto), Some(82.0)));
     assert_eq!((settings.sex, settings.unit), (Some(Sex::Male), Some(Unit::Height(1.83))));
@@ -33,7 +33,7 @@ fn the_documented_example_is_read() {
 }
 
 #[test]
-fn complaints_name_the_place_and_the_nearest_key() {
+fn errors_name_the_place_and_the_nearest_key() {
     let text = example();
     for (from, to, expected) in [
         (r#""shapes""#, r#""shape""#, "unknown key `shape`; did you mean `shapes`? (top level)"),
@@ -73,7 +73,7 @@ fn complaints_name_the_place_and_the_nearest_key() {
 }
 
 #[test]
-fn bytes_changed_at_random_do_no_harm() {
+fn randomly_changed_bytes_do_not_panic() {
     let whole = example().into_bytes();
     let mut random = Random::new(7);
     for _ in 0..2000 {
@@ -88,7 +88,7 @@ fn bytes_changed_at_random_do_no_harm() {
 
 /// Checks that the documented settings are the ones that the reader accepts.
 #[test]
-fn the_examples_of_the_page_are_read() {
+fn examples_of_the_page_are_read() {
     let page = include_str!("../../../../docs/ragdoll.md");
     let examples: Vec<&str> =
         page.split("```json\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
@@ -98,7 +98,7 @@ fn the_examples_of_the_page_are_read() {
 }
 
 #[test]
-fn garments_are_named_or_listed() {
+fn garments_are_read_by_name_or_as_a_list() {
     use sinew_ragdoll::settings::GarmentSource;
     let read = |garments: &str| {
         let text = format!(r#"{{"sinew": "ragdoll-settings", "version": 1, "garments": {garments}}}"#);

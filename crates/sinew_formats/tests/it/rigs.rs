@@ -88,7 +88,7 @@ fn assert_sound_primitive(part: &Primitive, slots: Option<usize>, textures: usiz
 
 #[needs_data]
 #[test]
-fn every_rig_keeps_the_promises_of_its_types() {
+fn every_rig_satisfies_the_invariants_of_its_types() {
     let data = shared_data();
     for path in files(&data.join("rigs"), &GLTF) {
         let document = load_gltf(&path, ReadOptions { textures: Textures::Decode });
@@ -102,7 +102,7 @@ fn every_rig_keeps_the_promises_of_its_types() {
 /// placement of the armature, for rigs in which both poses agree according to the manifest.
 #[needs_data]
 #[test]
-fn inverse_bind_matrices_undo_the_rest_pose() {
+fn inverse_bind_matrices_invert_the_rest_pose() {
     for name in
         ["CesiumMan.glb", "RiggedFigure.glb", "kaykit_Knight.glb", "mannequiny.glb", "quaternius_Robot.glb"]
     {
@@ -126,7 +126,7 @@ fn inverse_bind_matrices_undo_the_rest_pose() {
 
 #[needs_data]
 #[test]
-fn vrm_files_state_their_roles_by_the_names_of_vrm_1() {
+fn vrm_roles_have_the_names_of_vrm_1() {
     let document = load("CoolLoops_mixamorig_vrm0.vrm");
     let rig = &document.rig;
     let joint = |role: &str| {

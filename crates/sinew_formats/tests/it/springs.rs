@@ -25,7 +25,7 @@ fn springs(extensions: &str) -> Springs {
 }
 
 #[test]
-fn version_1_with_extended_colliders_and_limits() {
+fn version_1_springs_are_read_with_extended_colliders_and_limits() {
     let springs = springs(
         r#"{"VRMC_springBone":{"specVersion":"1.0",
         "colliders":[
@@ -105,7 +105,7 @@ fn version_0_springs_include_all_descendants() {
 }
 
 #[test]
-fn wrong_springs_are_refused_with_their_place() {
+fn invalid_springs_are_rejected_with_their_place() {
     let version_1 = |what: &str| format!("{{\"VRMC_springBone\":{{{what}}}}}");
     let version_0 = |what: &str| format!("{{\"VRM\":{{\"secondaryAnimation\":{{{what}}}}}}}");
     for (extensions, what, place) in [
@@ -147,7 +147,7 @@ fn unusable_springs_are_skipped_with_a_warning() {
 }
 
 #[test]
-fn excessive_collider_groups_are_refused() {
+fn excessive_collider_groups_are_rejected() {
     // A few kilobytes that would refer to millions of colliders.
     let colliders = vec![r#"{"node":1,"shape":{"sphere":{}}}"#; 2000].join(",");
     let members: Vec<String> = (0..2000).map(|index| index.to_string()).collect();
@@ -158,7 +158,7 @@ fn excessive_collider_groups_are_refused() {
     let error = read(&format!(
         r#"{{"VRMC_springBone":{{"colliders":[{colliders}],"colliderGroups":[{group}],"springs":[{many}]}}}}"#
     ))
-    .expect_err("1.9 GB of references");
+    .expect_err("1.9 GB of references are rejected");
     assert!(error.what.contains("more than the size of the file"), "{error}");
 }
 

@@ -18,7 +18,7 @@ fn first_json<'a>(lines: impl Iterator<Item = &'a str>) -> String {
 }
 
 #[test]
-fn the_documented_example_is_read() {
+fn documented_example_is_read() {
     let text = documented_example(include_str!("../../src/world.rs"));
     let bodies = read_world(text.as_bytes()).unwrap();
     assert_eq!(bodies.len(), 3);
@@ -37,7 +37,7 @@ fn the_documented_example_is_read() {
 const RUBBER: Material = Material { friction: 0.9, restitution: 0.7, rolling: 0.002, ..Material::DEFAULT };
 
 #[test]
-fn the_example_of_the_page_is_read_and_stands() {
+fn example_of_the_page_is_read_and_stands() {
     let text = first_json(include_str!("../../../../docs/world.md").lines());
     let bodies = read_world(text.as_bytes()).unwrap();
     let kinds: Vec<BodyKind> = bodies.iter().map(|body| body.kind).collect();
@@ -68,13 +68,13 @@ fn the_example_of_the_page_is_read_and_stands() {
 
 /// Checks that every key on the page is known, and every known shape and kind is on the page.
 #[test]
-fn the_page_lists_every_key_and_kind() {
+fn page_lists_every_key_and_kind() {
     let page = include_str!("../../../../docs/world.md");
     let complaint = |json: &str| read_world(json.as_bytes()).unwrap_err().what;
     let body = complaint(r#"{"sinew":"world","version":1,"bodies":[{"?":0}]}"#);
     let shape = complaint(r#"{"sinew":"world","version":1,"bodies":[{"shapes":[{"?":0}]}]}"#);
     for complaint in [body, shape] {
-        let known = complaint.split("known are ").nth(1).expect("it lists what is known");
+        let known = complaint.split("known are ").nth(1).expect("the error lists the known keys");
         for key in known.split(", ") {
             assert!(page.contains(&format!("`{key}`")), "{key} is not on the page");
         }
@@ -206,7 +206,7 @@ fn written_files_read_back_equal() {
 }
 
 #[test]
-fn defaults_are_left_out() {
+fn defaults_are_not_written() {
     let shapes = vec![ShapeDef::new(Shape::Box { half_extents: Vec3::new(1.0, 0.1, 2.5) })];
     let text = write_world(&[BodyDef { kind: BodyKind::Static, shapes, ..BodyDef::default() }]);
     assert!(
@@ -218,7 +218,7 @@ fn defaults_are_left_out() {
 }
 
 #[test]
-fn complaints_name_the_place() {
+fn errors_name_the_place() {
     let world = |bodies: &str| format!(r#"{{"sinew":"world","version":1,"bodies":[{bodies}]}}"#);
     for (json, expected) in [
         (r#"{"sinew":"ragdoll","version":1}"#.into(), "this is a `ragdoll` file, not a `world` (sinew)"),
@@ -281,7 +281,7 @@ fn complaints_name_the_place() {
 }
 
 #[test]
-fn complaints_about_materials_and_contacts_name_the_place() {
+fn errors_of_materials_and_contacts_name_the_place() {
     for (surface, expected) in [
         (r#""material":"ice""#, "there is no material `ice` (bodies[0].shapes[0].material)"),
         (

@@ -72,7 +72,7 @@ fn written(rig: &Rig, clips: &[Clip]) -> Document {
 }
 
 #[test]
-fn joints_skins_and_meshes_come_back() {
+fn joints_skins_and_meshes_round_trip() {
     let rig = rig();
     let back = written(&rig, &[]).rig;
     for (index, joint) in rig.joints.iter().enumerate() {
@@ -93,7 +93,7 @@ fn joints_skins_and_meshes_come_back() {
 }
 
 #[test]
-fn clips_move_the_joints_they_moved() {
+fn written_clips_move_the_same_joints() {
     let document = written(&rig(), &[clip("first", 1), clip("second", 2)]);
     let moved: Vec<_> = document
         .clips
@@ -105,7 +105,7 @@ fn clips_move_the_joints_they_moved() {
 }
 
 #[test]
-fn a_rig_without_meshes_is_a_file_too() {
+fn rig_without_meshes_is_written() {
     let rig = Rig { meshes: Vec::new(), skins: Vec::new(), ..rig() };
     let document = written(&rig, &[clip("only", 0)]);
     assert_eq!(document.rig.joints.len(), 3);

@@ -8,7 +8,7 @@
 //! use sinew_geometry::boxes::{Aabb, Cuboid, Obb, Overlap, Sphere};
 //!
 //! let plank = Obb::new(Vec3::Y, Rotation::from_axis_angle(Vec3::Z, 0.5), Vec3::new(2.0, 0.1, 0.5));
-//! let way = plank.point_penetration(Vec3::Y).expect("its middle is inside");
+//! let way = plank.point_penetration(Vec3::Y).expect("the point is inside");
 //! assert!((way.depth - 0.1).abs() < 1e-6);
 //! assert!(plank.overlaps(&Sphere::new(Vec3::new(0.0, 2.0, 0.0), 0.9)));
 //! assert!(plank.bounds().volume() > 5.0 * plank.volume());

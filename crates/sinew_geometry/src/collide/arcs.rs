@@ -144,7 +144,7 @@ mod tests {
 
     /// Eight at a time and one by one find the same pairs, each once.
     #[test]
-    fn lanes_find_the_arcs_that_cross() {
+    fn lane_test_finds_the_crossing_arcs() {
         let mut random = Random::new(12);
         let mut found = 0;
         for corners in [4, 5, 8, 20, 60, 120] {

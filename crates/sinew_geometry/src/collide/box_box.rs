@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn the_closest_points_are_those_of_all_corners_and_edges() {
+    fn closest_points_match_all_corners_and_edges() {
         let mut random = Random::new(42);
         let (mut pairs, mut with_points) = (0, 0);
         for case in 0..40_000 {

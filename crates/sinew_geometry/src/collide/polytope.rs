@@ -240,7 +240,7 @@ mod tests {
     /// The polytope of a triangle (two faces, three edges) gives the best of all face normals and crossed edges, both
     /// ways.
     #[test]
-    fn a_triangle_is_a_polytope() {
+    fn triangle_has_the_features_of_a_polytope() {
         let mut random = Random::new(31);
         let (mut touching, mut faces) = (0, 0);
         for case in 0..3_000 {
@@ -285,7 +285,7 @@ mod tests {
 
     /// Skipping never loses the closest of all corners and edges.
     #[test]
-    fn the_closest_feature_is_kept() {
+    fn closest_feature_is_kept() {
         let mut random = Random::new(8);
         let mut apart = 0;
         for case in 0..400 {

@@ -192,7 +192,7 @@ mod tests {
 
     /// Two boxes side by side at random poses hide their common side, but not the protruding part of the higher box.
     #[test]
-    fn an_abutting_shape_hides_only_the_common_side() {
+    fn abutting_shape_hides_only_the_common_side() {
         let mut random = Random::new(5);
         for case in 0..200 {
             let frame = Transform::new(random.in_cube() * 5.0, random.rotation());
@@ -201,11 +201,11 @@ mod tests {
             let around = |by: Vec3, p: Vec3| Faces::around(&cube(), &beside(by), frame.point(p), 0.0045);
             let seam = Vec3::new(0.5, 0.5, random.range(-0.3, 0.3));
             let (up, side) = (frame.rotation * Vec3::Y, frame.rotation * Vec3::X);
-            let mut left = around(Vec3::ZERO, seam).expect("it is there");
+            let mut left = around(Vec3::ZERO, seam).expect("a face is near the point");
             assert_eq!(left.count(), 2);
-            left.hide_behind(&around(Vec3::new(1.0, raised, 0.0), seam).expect("it is there"));
+            left.hide_behind(&around(Vec3::new(1.0, raised, 0.0), seam).expect("a face is near the point"));
             let tilted = (up + side * random.range(0.01, 3.0)).normalize();
-            let (normal, height) = left.shown(tilted).expect("its top");
+            let (normal, height) = left.shown(tilted).expect("the top is visible");
             assert!(
                 (normal - up).length() < 1e-5 && height.abs() < 1e-5,
                 "case {case}: normal {normal}, height {height}"
@@ -214,29 +214,29 @@ mod tests {
             for below in [0.5, 0.0] {
                 let foot = Vec3::new(0.5, 0.5, seam.z);
                 let at = Vec3::new(1.0, 1.0 - below, 0.0);
-                let mut wall = around(at, foot).expect("it is there");
-                wall.hide_behind(&around(Vec3::ZERO, foot).expect("it is there"));
-                let (normal, _) = wall.shown(-side).expect("its side");
+                let mut wall = around(at, foot).expect("a face is near the point");
+                wall.hide_behind(&around(Vec3::ZERO, foot).expect("a face is near the point"));
+                let (normal, _) = wall.shown(-side).expect("the side is visible");
                 assert!((normal + side).length() < 1e-5, "case {case}, {below} below: normal {normal}");
             }
             // A single box shows all faces.
-            let alone = around(Vec3::ZERO, seam).expect("it is there");
-            let (normal, _) = alone.shown(tilted).expect("its edge");
+            let alone = around(Vec3::ZERO, seam).expect("a face is near the point");
+            let (normal, _) = alone.shown(tilted).expect("the edge is visible");
             assert!((normal - tilted).length() < 1e-5, "case {case}: normal {normal}, expected {tilted}");
         }
     }
 
     #[test]
-    fn deep_shapes_show_no_side_and_twins_show_all() {
+    fn deep_shapes_have_no_visible_side_and_coincident_ones_have_all() {
         let at = Transform::new(Vec3::ZERO, Rotation::from_axis_angle(Vec3::Z, 0.3));
         let edge = at.point(Vec3::new(0.5, 0.5, 0.0));
-        let faces = || Faces::around(&cube(), &at, edge, 0.004).expect("it is there");
+        let faces = || Faces::around(&cube(), &at, edge, 0.004).expect("a face is near the point");
         let mut twin = faces();
         twin.hide_behind(&faces());
         assert!(twin.shown(at.rotation * Vec3::X).is_some());
         let large = Shape::cuboid(Vec3::splat(0.6));
         let mut buried = faces();
-        buried.hide_behind(&Faces::around(&large, &at, edge, 0.004).expect("it is there"));
+        buried.hide_behind(&Faces::around(&large, &at, edge, 0.004).expect("a face is near the point"));
         assert!(buried.shown(at.rotation * Vec3::X).is_none());
     }
 }

@@ -15,7 +15,7 @@
 //! assert!((between.distance - 0.4).abs() < 1e-6);
 //!
 //! let hit = cast_shape(&ball, &above, Vec3::new(0.0, -0.8, 0.0), &barrel, &Transform::IDENTITY);
-//! assert!((hit.expect("it falls on the lid").fraction - 0.5).abs() < 1e-6);
+//! assert!((hit.expect("the ball hits the lid").fraction - 0.5).abs() < 1e-6);
 //! ```
 
 mod cast;

@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flight_of_stairs_is_a_box_for_each_step() {
+    fn stairs_become_one_box_per_step() {
         let stairs = unit_grid([6, 6, 4], |[x, y, _]| y <= x);
         let boxes = stairs.cover(0.0, 100);
         assert_eq!(boxes.len(), 6, "{boxes:?}");
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn covers_hold_every_full_cell_and_no_empty_one() {
+    fn cover_contains_every_full_cell_and_no_empty_one() {
         let mut random = sinew_math::Random::new(3);
         for _ in 0..50 {
             let bits: Vec<bool> = (0..5 * 6 * 7).map(|_| random.unit() < 0.7).collect();

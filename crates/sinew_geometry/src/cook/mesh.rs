@@ -160,7 +160,7 @@ fn check(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Aabb, CookError> 
             let Some(&p) = positions.get(index as usize) else {
                 return Err(CookError::IndexOutOfRange { triangle, index, vertices: positions.len() });
             };
-            // The comparison is false for NaN.
+            // The comparison is false for NaN, so NaN is rejected.
             if !(p.x.abs() <= FARTHEST && p.y.abs() <= FARTHEST && p.z.abs() <= FARTHEST) {
                 return Err(CookError::NotFinite { triangle, vertex: index });
             }

@@ -143,7 +143,7 @@ const FINER: usize = 2;
 /// Share of the tolerance within which 95 % of the surfaces must be for the boxes to be close enough: a plate is half
 /// as thick as the tolerance.
 const CLOSE: f32 = 0.55;
-/// Share to which more boxes must reduce the error to be used.
+/// Largest ratio of the new error to the old one at which a result with more boxes is used.
 const WORTH: f32 = 0.9;
 
 /// Returns boxes, and their deviation from the mesh, for the requested tolerance times `finer`.

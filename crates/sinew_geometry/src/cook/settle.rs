@@ -45,7 +45,7 @@ pub(super) fn settled(block: Obb, points: &[MeshPoint], scale: Scale) -> Obb {
         laid.rotation = (Rotation::from_arc(up, normal) * block.rotation).normalize();
     }
     let raised = height - (laid.center.dot(normal) + laid.half_extents[axis]);
-    // A top far from the plane represents more than this ground.
+    // If the top is far from the plane, the box represents more than this ground, so it stays as it is.
     if raised.abs() > 2.0 * scale.tolerance || laid.half_extents[axis] + 0.5 * raised < scale.thinnest {
         return block;
     }

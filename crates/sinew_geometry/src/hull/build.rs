@@ -72,7 +72,7 @@ fn numbered(places: &[Vec3], faces: &merge::Faces) -> Option<(Vec<Vec3>, Vec<Vec
     if faces.len() > MAX_FACES || used.len() > MAX_VERTICES {
         return None;
     }
-    let number = |i: &u32| used.binary_search(i).expect("it is used") as u8;
+    let number = |i: &u32| used.binary_search(i).expect("the corner is used") as u8;
     let mut loops: Vec<Vec<u8>> = faces
         .iter()
         .map(|face| {

@@ -175,7 +175,8 @@ impl<'a> Growing<'a> {
     /// Replaces all triangles visible from the furthest point of `seed` by triangles between that point and the
     /// horizon.
     fn take_in_furthest(&mut self, seed: u32) {
-        let apex = self.triangles[seed as usize].outside.pop().expect("it was queued for its point");
+        let apex =
+            self.triangles[seed as usize].outside.pop().expect("a queued triangle has an outside point");
         let p = self.points[apex as usize];
         let (mut horizon, mut orphans, mut open) = (Vec::new(), Vec::new(), vec![seed]);
         self.triangles[seed as usize].alive = false;

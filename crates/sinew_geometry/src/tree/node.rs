@@ -187,7 +187,7 @@ impl Node {
         (L::le(first, last * slack) & L::le(first, L::splat(limit) * slack)).bits()
     }
 
-    /// Distances of faces from the start of a line along an axis, metres.
+    /// Distances from the start of a line to faces along an axis, metres.
     #[inline(always)]
     fn beyond<L: Lanes>(&self, faces: &Faces, axis: usize) -> L {
         L::load(&self.rows[faces.row[axis]]) - L::splat(faces.origin[axis])

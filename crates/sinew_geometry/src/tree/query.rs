@@ -100,7 +100,7 @@ impl<V: FnMut(u32) -> f32> Kernel for Along<'_, V> {
         let mut waiting = Waiting::new(self.root);
         let mut enter = [0.0; WIDTH];
         while let Some((key, child)) = waiting.pop() {
-            // A leaf as near as the best so far may be equally good.
+            // A leaf at the distance of the best result so far may contain an equal result, so it is tested, too.
             if key > limit * (1.0 + super::PAD) {
                 continue;
             }

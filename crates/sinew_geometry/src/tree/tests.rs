@@ -161,7 +161,7 @@ fn meets(bounds: &Aabb, sweep: &Sweep) -> bool {
 }
 
 #[test]
-fn a_changing_tree_matches_brute_force() {
+fn changing_tree_matches_brute_force() {
     let mut random = Random::new(1);
     for case in 0..cases(20_000) {
         let scale = [1.0, 100.0, 1e6][case % 3];
@@ -183,7 +183,7 @@ fn a_changing_tree_matches_brute_force() {
 }
 
 #[test]
-fn a_tree_of_many_is_full_and_finds_them() {
+fn large_tree_has_full_nodes_and_finds_every_leaf() {
     let mut random = Random::new(2);
     for count in [0_usize, 1, 7, 8, 9, 63, 64, 65, 512, 513, 5000] {
         let leaves: Vec<Option<Aabb>> = (0..count).map(|_| Some(some_box(&mut random, 10.0))).collect();
@@ -202,7 +202,7 @@ fn a_tree_of_many_is_full_and_finds_them() {
 
 /// A row of boxes, inserted in order, does not make a deep tree.
 #[test]
-fn a_row_does_not_make_a_deep_tree() {
+fn leaves_in_a_row_give_a_shallow_tree() {
     let mut tree = Tree::default();
     for i in 0..10_000 {
         let at = Vec3::new(i as f32, 0.0, 0.0);

@@ -56,7 +56,7 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     if triangles.len() >= MAX_TRIANGLES || vertices.len() > 3 * MAX_TRIANGLES {
         return Err(MeshError::TooMany { triangles: triangles.len() });
     }
-    // The comparison is false for NaN.
+    // The comparison is false for NaN, so NaN is rejected.
     let sane = |v: &Vec3| v.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
     if let Some(vertex) = vertices.iter().position(|v| !sane(v)) {
         return Err(MeshError::NotFinite { vertex });

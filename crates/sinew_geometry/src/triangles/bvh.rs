@@ -102,7 +102,7 @@ impl Tree {
         while count > 0 {
             count -= 1;
             let (index, least) = open[count];
-            // The comparison is false for NaN.
+            // The comparison is false for NaN, so NaN is skipped.
             if !(least <= limit && least < f32::INFINITY) {
                 continue;
             }

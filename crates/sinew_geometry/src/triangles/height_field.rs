@@ -332,7 +332,7 @@ fn check(def: &HeightFieldDef) -> Result<(), HeightFieldError> {
     if def.heights.len() != vertices {
         return Err(HeightFieldError::Heights { heights: def.heights.len(), vertices });
     }
-    // The comparison is false for NaN.
+    // The comparison is false for NaN, so NaN is rejected.
     if !(def.spacing.iter().all(|&x| x > 0.0) && sides(def).iter().all(|&x| x <= MAX_COORDINATE)) {
         return Err(HeightFieldError::Spacing);
     }

@@ -48,7 +48,7 @@ impl Mesh {
         }
         let sheet = build::sheet(&vertices, &triangles).map_err(|_| r.error("a mesh is not valid"))?;
         if sheet.vertices.len() != vertices.len() || sheet.triangles.len() != triangles.len() {
-            return Err(r.error("a mesh holds what a mesh leaves out"));
+            return Err(r.error("a mesh contains triangles or vertices that a mesh never stores"));
         }
         Ok(Self::of_sheet(build::Sheet { numbers, dropped, ..sheet }))
     }

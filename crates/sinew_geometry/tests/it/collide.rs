@@ -111,7 +111,7 @@ fn capsule_on_box_touches_along_a_line() {
 
 /// Feature ids do not change while a box rocks and slides by less than a millimetre.
 #[test]
-fn features_survive_small_motion() {
+fn feature_ids_survive_small_motion() {
     let mut random = Random::new(4);
     let below = unit_box(Vec3::ZERO, Rotation::IDENTITY);
     for angle in [0.0, 0.3, 0.785] {

@@ -99,7 +99,7 @@ fn top(block: &Obb) -> f32 {
 }
 
 #[test]
-fn a_turned_box_becomes_itself() {
+fn rotated_box_becomes_one_equal_box() {
     let mut random = Random::new(1);
     for _ in 0..50 {
         let mut mesh = Mesh::default();
@@ -109,14 +109,14 @@ fn a_turned_box_becomes_itself() {
         let cooked = mesh.cook(150);
         assert_eq!(cooked.boxes.len(), 1);
         assert!(cooked.deviation.distance_max < 1e-3, "{cooked:?}");
-        let ratio = cooked.deviation.volume_ratio.expect("it is closed");
+        let ratio = cooked.deviation.volume_ratio.expect("the mesh is closed");
         assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
         assert_eq!(cooked.repairs.open_edges, 0);
     }
 }
 
 #[test]
-fn an_l_is_two_boxes() {
+fn l_shape_becomes_two_boxes() {
     let outline = [[0.0, 0.0], [1.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
     // The corner on the lower edge is on no side of the left piece: as modelled by hand, not by an exporter.
     let mesh = Mesh::prism(&outline, &[&[0, 1, 4, 5, 6], &[1, 2, 3, 4]], 1.5);
@@ -127,7 +127,7 @@ fn an_l_is_two_boxes() {
 }
 
 #[test]
-fn every_step_of_a_flight_is_a_box() {
+fn stairs_become_one_box_per_step() {
     let mesh = stairs(9, 0.18, 0.28, 1.2);
     let cooked = mesh.cook(150);
     assert!(cooked.deviation.distance_max < 1e-3, "{cooked:?}");
@@ -160,7 +160,7 @@ fn worn_stairs(steps: usize, [rise, run, width]: [f32; 3], worn: f32, drop: f32)
 }
 
 #[test]
-fn a_tread_stays_level_and_as_high_as_it_was_drawn() {
+fn treads_stay_level_and_keep_their_height() {
     let [rise, run, width] = [0.18, 0.30, 1.2];
     let about = Rotation::from_axis_angle(Vec3::Y, 0.4);
     for (worn, drop) in [(0.0, 0.0), (0.4, 0.02), (0.45, 0.022)] {
@@ -188,7 +188,7 @@ fn a_tread_stays_level_and_as_high_as_it_was_drawn() {
 }
 
 #[test]
-fn few_triangles_use_the_budget() {
+fn mesh_of_few_triangles_uses_the_budget() {
     // A barn: four walls with a gateway, and a gable roof.
     let mut mesh = Mesh::default();
     let no_faces: [usize; 0] = [];
@@ -209,7 +209,7 @@ fn few_triangles_use_the_budget() {
 }
 
 #[test]
-fn a_ball_of_boxes_is_a_ball_within_the_tolerance() {
+fn boxes_of_a_ball_are_within_the_tolerance() {
     let mesh = Mesh::sphere(1.0, 16);
     let few = mesh.cook(20).deviation;
     let many = mesh.cook(150).deviation;
@@ -232,7 +232,7 @@ fn overlapping_parts_are_counted_once() {
 }
 
 #[test]
-fn a_sheet_becomes_a_plate_behind_its_face() {
+fn sheet_becomes_a_plate_behind_its_face() {
     let mut mesh = Mesh::default();
     mesh.polygon(&[Vec3::ZERO, Vec3::new(0.0, 0.0, 3.0), Vec3::new(4.0, 0.0, 3.0), Vec3::new(4.0, 0.0, 0.0)]);
     let cooked = mesh.cook(150);
@@ -245,7 +245,7 @@ fn a_sheet_becomes_a_plate_behind_its_face() {
 }
 
 #[test]
-fn a_room_seen_from_inside_stays_hollow() {
+fn room_with_inward_faces_stays_hollow() {
     let mut mesh = Mesh::default();
     mesh.block(Vec3::ZERO, Vec3::new(3.0, 1.5, 2.0), Rotation::IDENTITY, &[]);
     for triangle in &mut mesh.triangles {
@@ -262,7 +262,7 @@ fn a_room_seen_from_inside_stays_hollow() {
 }
 
 #[test]
-fn a_shell_is_filled_only_if_that_is_closer() {
+fn shell_is_filled_only_if_that_is_closer() {
     let bottom = [2];
     let mut house = Mesh::default();
     house.block(Vec3::ZERO, Vec3::new(2.0, 2.0, 2.0), Rotation::IDENTITY, &bottom);
@@ -275,7 +275,7 @@ fn a_shell_is_filled_only_if_that_is_closer() {
 }
 
 #[test]
-fn the_budget_is_kept_at_least_cost() {
+fn box_budget_is_kept_at_the_least_error() {
     // Pairs of blocks with a gap of 1 cm, one block with a small bump: the least important parts are dropped first.
     let mut mesh = Mesh::default();
     for row in 0..10 {
@@ -308,13 +308,13 @@ fn thousands_of_parts_finish_quickly() {
 }
 
 #[test]
-fn the_same_mesh_gives_the_same_boxes() {
+fn equal_meshes_give_equal_boxes() {
     let mesh = Mesh::sphere(2.0, 20);
     assert_eq!(mesh.cook(30), mesh.cook(30));
 }
 
 #[test]
-fn bad_meshes_are_refused_with_their_place() {
+fn invalid_meshes_are_rejected_with_their_place() {
     let mut mesh = Mesh::default();
     mesh.block(Vec3::ZERO, Vec3::ONE, Rotation::IDENTITY, &[]);
     let refuse = |mesh: &Mesh| {
@@ -425,7 +425,7 @@ fn brute_distance(&[a, b, c]: &[Vec3; 3], p: Vec3) -> f32 {
 }
 
 #[test]
-fn winding_numbers_tell_inside_from_outside() {
+fn winding_numbers_distinguish_inside_and_outside() {
     let mut random = Random::new(6);
     let (sphere, mut open) = (Mesh::sphere(1.0, 24), Mesh::default());
     open.block(Vec3::ZERO, Vec3::ONE, Rotation::IDENTITY, &[3]);

@@ -137,7 +137,7 @@ fn moved_out(frame: &Transform, manifold: &Manifold) -> Transform {
 
 /// The lowest face over the triangle is not the deepest part of the hull: a steeper face beside it is deeper by 23 mm.
 #[test]
-fn the_deepest_face_beside_the_lowest_counts() {
+fn deepest_face_beside_the_lowest_is_used() {
     let corners =
         [Vec3::new(-0.967, 0.802, 0.770), Vec3::new(-0.015, -0.123, 0.869), Vec3::new(-0.248, 0.688, -0.870)];
     let points = [
@@ -168,7 +168,7 @@ fn the_deepest_face_beside_the_lowest_counts() {
 /// The separation of a box edge above the top of a pyramid is the edge's height: no side of the pyramid treats the top
 /// as a point of an edge, which the other sides would reject.
 #[test]
-fn an_edge_over_a_peak_has_contacts() {
+fn edge_over_a_peak_has_contacts() {
     let peak = Vec3::Y * 0.5;
     let foot = [(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)].map(|(x, z)| Vec3::new(x, 0.0, z));
     let vertices = [peak, foot[0], foot[1], foot[2], foot[3]];
@@ -189,7 +189,7 @@ fn an_edge_over_a_peak_has_contacts() {
 }
 
 #[test]
-fn order_and_place_do_not_matter() {
+fn mesh_contacts_are_independent_of_order_and_position() {
     let mut random = Random::new(42);
     for kind in 0..KINDS {
         for case in 0..cases(100_000) {
@@ -256,7 +256,7 @@ fn terrain(random: &mut Random, side: usize) -> (Shape, Shape, Vec<[Vec3; 3]>) {
 
 /// The nearest contact of a shape over terrain is that of the nearest triangle, each triangle tested alone.
 #[test]
-fn terrain_distance_is_that_of_the_nearest_triangle() {
+fn terrain_distance_equals_that_of_the_nearest_triangle() {
     let mut random = Random::new(45);
     let (mesh, field, corners) = terrain(&mut random, 12);
     let alone: Vec<Shape> = corners.iter().map(|corners| mesh_of(corners)).collect();
@@ -389,7 +389,7 @@ fn terrain_rays_match_triangle_rays() {
 }
 
 #[test]
-fn the_closest_point_is_that_of_all_triangles() {
+fn closest_point_equals_the_closest_of_all_triangles() {
     let mut random = Random::new(44);
     let (mesh, field, corners) = terrain(&mut random, 12);
     let alone: Vec<Shape> = corners.iter().map(|corners| mesh_of(corners)).collect();

@@ -37,7 +37,8 @@ fn holds(shape: &Shape, p: Vec3) -> bool {
             (p.x * p.x + p.z * p.z + beyond * beyond).sqrt() <= radius
         }
         Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
-            // True in one of the balls between the two ends: ρ² + (y − c)² ≤ r², with c and r linear along the axis.
+            // True if the point is in one of the balls between the two ends: ρ² + (y − c)² ≤ r², with c and r linear
+            // along the axis.
             let (rho, y) = (f64::from(p.x).hypot(f64::from(p.z)), f64::from(p.y));
             let beyond = |t: f64| {
                 let center = f64::from(half_height) * (2.0 * t - 1.0);
@@ -72,7 +73,7 @@ fn frames(random: &mut Random) -> Transform {
 
 /// Marching along the ray finds the same entry; the normal is that of the surface there.
 #[test]
-fn rays_enter_where_marching_does() {
+fn shape_rays_match_marching() {
     const STEPS: u32 = 4000;
     let mut random = Random::new(1);
     for shape in SHAPES {
@@ -135,7 +136,7 @@ fn long_rays_keep_their_precision() {
 }
 
 #[test]
-fn degenerate_rays_hit_nothing_outside() {
+fn degenerate_rays_outside_a_shape_miss() {
     for shape in SHAPES {
         let outside = Vec3::new(0.0, 3.0, 0.0);
         for direction in [Vec3::ZERO, Vec3::Y, Vec3::new(f32::NAN, 0.0, 0.0)] {
@@ -146,7 +147,7 @@ fn degenerate_rays_hit_nothing_outside() {
             );
         }
         let inside = Ray { origin: Vec3::new(0.0, -0.1, 0.0), direction: Vec3::ZERO };
-        let hit = shape.cast_ray(&Transform::IDENTITY, &inside).expect("it starts inside");
+        let hit = shape.cast_ray(&Transform::IDENTITY, &inside).expect("a ray from inside hits");
         assert_eq!(hit.fraction, 0.0);
         assert!((hit.normal.length() - 1.0).abs() < 1e-6, "{shape:?}");
     }
@@ -154,7 +155,7 @@ fn degenerate_rays_hit_nothing_outside() {
 
 /// A displacement along the normal by the distance ends on the surface, and no sampled surface point is closer.
 #[test]
-fn signed_distance_is_the_closest_surface() {
+fn signed_distance_matches_the_closest_surface_point() {
     let mut random = Random::new(2);
     for shape in SHAPES {
         let surface: Vec<Vec3> = (0..4000).filter_map(|_| surface_point(&shape, &mut random)).collect();
@@ -255,7 +256,7 @@ fn masses_of_two_halves_sum_to_the_box() {
 
 /// Bounds contain every point of the shape, and the shape touches each of their sides.
 #[test]
-fn bounds_are_tight() {
+fn bounds_touch_their_shape() {
     let mut random = Random::new(3);
     for shape in solids() {
         for _ in 0..20 {
@@ -281,7 +282,7 @@ fn bounds_are_tight() {
 }
 
 #[test]
-fn invalid_sizes_are_named() {
+fn errors_name_the_invalid_size() {
     for shape in SHAPES {
         assert_eq!(shape.check(), Ok(()));
     }

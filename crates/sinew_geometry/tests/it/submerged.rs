@@ -65,7 +65,7 @@ fn submerged_volumes_match_brute_force() {
 }
 
 #[test]
-fn both_parts_sum_to_the_whole() {
+fn submerged_and_dry_parts_sum_to_the_whole() {
     let mut random = Random::new(4);
     for i in 0..2000 {
         let shape = match i % 6 {
@@ -96,7 +96,7 @@ fn both_parts_sum_to_the_whole() {
 }
 
 #[test]
-fn a_tetrahedron_is_cut_in_proportion_to_the_cube_of_its_height() {
+fn cut_tetrahedron_has_the_volume_of_the_cube_of_its_height() {
     let [o, x, y, z] = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
     let faces = [[o, y, x], [o, z, y], [o, x, z], [x, y, z]].map(<[Vec3; 3]>::into_iter);
     for height in [0.1f32, 0.5, 0.9] {

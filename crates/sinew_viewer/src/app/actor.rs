@@ -1,4 +1,4 @@
-//! Buttons that instruct a character: clips, hits, drives, getting up, walking.
+//! Buttons for a character: clips, hits, drives, getting up, walking.
 
 use super::style;
 use egui::{ComboBox, RichText};

@@ -129,7 +129,7 @@ fn range(app: &mut App, ui: &mut egui::Ui, axis: usize) -> bool {
     row(ui, RANGES[axis], |ui| {
         let (lowest, highest) =
             if axis < 2 { (-170.0..=0.0, 0.0..=170.0) } else { (-175.0..=high, low..=175.0) };
-        // Draw the upper end first, from the right.
+        // Draws the upper end first, because the row is filled from the right.
         for (value, range) in [(&mut high, highest), (&mut low, lowest)] {
             let field = ui.add(DragValue::new(value).range(range).speed(0.5).suffix("°").max_decimals(1));
             is_done |= finished(&field);

@@ -37,7 +37,7 @@ impl App {
         }
         if pressed(Key::C) {
             self.follow(self.follows.is_none());
-            self.tell(if self.follows.is_some() { "the camera goes along" } else { "the camera stays" });
+            self.tell(if self.follows.is_some() { "the camera follows" } else { "the camera stays" });
         }
         if pressed(Key::B) {
             let at = ui.input(|input| input.pointer.hover_pos());

@@ -623,7 +623,7 @@ impl App {
         }
     }
 
-    /// Carries out what a button for the character does.
+    /// Executes the action of a button for the character.
     fn press(&mut self, pressed: Pressed) {
         match pressed {
             Pressed::Hit => {

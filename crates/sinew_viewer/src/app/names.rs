@@ -80,7 +80,7 @@ mod tests {
     use super::{plain, value};
 
     #[test]
-    fn names_are_words_and_values_have_units() {
+    fn metric_names_are_words_and_values_have_units() {
         for (name, words, unit) in [
             ("limit_overshoot_p99_deg", "99 % of limit overshoot", "°"),
             ("joint_gap_max_m", "largest joint gap", "m"),

@@ -1,9 +1,9 @@
-//! Orders from the buttons of the page around the viewer.
+//! Commands from the buttons of the page around the viewer.
 
 use super::{App, mouse};
 use crate::session::Subject;
 
-/// Order of a page.
+/// Command of a button on the page.
 #[derive(Clone, Debug)]
 pub enum Order {
     /// Pushes the subject away from the camera.
@@ -21,7 +21,7 @@ pub enum Order {
 }
 
 impl Order {
-    /// Returns the order of a button by its name.
+    /// Returns the command of the button with that name.
     pub fn named(name: &str) -> Option<Self> {
         Some(match name {
             "push" => Self::Push,
@@ -35,7 +35,7 @@ impl Order {
 }
 
 impl App {
-    /// Carries out an order.
+    /// Executes a command.
     pub fn obey(&mut self, order: Order) {
         match order {
             Order::Push => mouse::push_subject(self),

@@ -29,7 +29,7 @@ impl App {
         }
     }
 
-    /// Notes the result of a scene that has ended, and opens the next one.
+    /// Records the result of a scene that has ended, and opens the next one.
     pub(super) fn go_on_touring(&mut self) {
         if !self.tour.runs || self.goal.is_some() {
             return;

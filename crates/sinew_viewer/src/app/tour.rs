@@ -1,4 +1,4 @@
-//! A run through all scenes to their ends, which notes whether each meets its expectations.
+//! A run of all scenes to their ends, which records whether each meets its expectations.
 
 use sinew_scenes::scenes::{Scene, registry};
 
@@ -31,7 +31,7 @@ impl Tour {
         registry().get(self.results.len())
     }
 
-    /// Notes the result of the scene that has ended.
+    /// Records the result of the scene that has ended.
     pub fn note(&mut self, is_met: bool) {
         if let Some(scene) = self.next() {
             self.results.push((scene.name, is_met));
@@ -55,7 +55,7 @@ mod tests {
     use sinew_scenes::scenes::registry;
 
     #[test]
-    fn every_scene_is_noted_once() {
+    fn every_scene_has_one_note() {
         let mut tour = Tour::begun();
         let last = registry().last().expect("there are scenes").name;
         while let Some(scene) = tour.next() {

@@ -88,7 +88,7 @@ fn outcome(app: &mut App, ui: &mut egui::Ui) {
         app.save_glb();
     }
     if app.session.recording().is_some()
-        && ui.button("Save recording").on_hover_text("What was done and what became of it").clicked()
+        && ui.button("Save recording").on_hover_text("The operations and the resulting states").clicked()
     {
         app.save_recording();
     }

@@ -28,7 +28,7 @@ pub(crate) struct Pipelines {
     pub line_on_top: wgpu::RenderPipeline,
 }
 
-/// Parameters in which pipelines differ.
+/// Parameters that differ between pipelines.
 struct Kind<'a> {
     vertex: &'a str,
     /// Name of the fragment shader; `None` for shadows.

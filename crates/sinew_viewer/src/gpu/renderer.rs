@@ -45,7 +45,7 @@ impl StageRenderer {
     /// Creates a renderer of stages for targets of that format.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         let pipelines = Pipelines::new(gpu, format);
-        let white = Texture::new(1, 1, vec![255; 4]).expect("four bytes are a texel");
+        let white = Texture::new(1, 1, vec![255; 4]).expect("a texel has four bytes");
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
         let shadow_map = texture(gpu, "shadow map", DEPTH, [SHADOW_TEXELS; 2], 1, usage);
         let shadow_map = shadow_map.create_view(&Default::default());

@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn bones_and_colliders_are_where_their_joint_is() {
+    fn bones_and_colliders_are_drawn_at_their_joint() {
         let keeps = Side::Outside;
         let (tip, offset) = (Vec3::new(0.0, 1.0, 1.0), Vec3::NEG_X);
         let lines = lines_of(ColliderShape::Sphere { offset, radius: 0.3, keeps });
@@ -149,12 +149,12 @@ mod tests {
         assert!((low + 2.2).abs() < 1e-5 && (high - 2.2).abs() < 1e-5, "{low} to {high}");
         // A plane with its normal.
         let lines = lines_of(ColliderShape::Plane { offset, normal: Vec3::Y });
-        let last = lines.last().expect("its normal");
+        let last = lines.last().expect("the normal is drawn");
         assert!((last.to - last.from).normalize().dot(Vec3::NEG_X) > 0.999, "{last:?}");
     }
 
     #[test]
-    fn a_particle_on_its_backstop_is_red() {
+    fn particle_on_its_backstop_is_red() {
         let mut world = World::new(WorldDef::default());
         let body = world.add_body(&BodyDef::fixed(Shape::Sphere { radius: 0.1 }).at(Vec3::Z));
         let at = |height: f32| ParticleDef {

@@ -389,7 +389,7 @@ impl Session {
     /// One line: no recording is played, or the second one is of another scene.
     pub fn set_ghost(&mut self, name: &str, recording: Recording) -> Result<(), Error> {
         let Run::Replay(playback) = &self.run else {
-            return Err(Error::unsupported("a ghost goes along with a recording, and none is played", ""));
+            return Err(Error::unsupported("a ghost needs a recording, and none is played", ""));
         };
         let ghost = Ghost::new(name.to_owned(), recording, playback.replay.recording());
         self.ghost = Some(Box::new(ghost.map_err(|error| error.with_file(name))?));

@@ -36,12 +36,12 @@ impl Undo {
         !continues && !is_part
     }
 
-    /// Remembers the state before an operation.
+    /// Stores the state before an operation.
     pub fn changed(&mut self, before: RecorderMark) {
         self.push(Change::Moment(Box::new(before)));
     }
 
-    /// Remembers the edits of a body before a new one.
+    /// Stores the edits of a body before a new one.
     pub fn edited(&mut self, body: usize, before: BoneSettings) {
         self.push(Change::Wish(body, before));
     }
@@ -74,7 +74,7 @@ impl Undo {
                 if !recorder.go_to(&mark) {
                     return Err("this scene cannot return to an earlier state".to_owned());
                 }
-                // It has no state of that moment.
+                // The second run has no saved state of that time, so it is dropped.
                 session.twin = None;
                 session.begin_trails();
                 let steps = session.world().step_count() as usize;

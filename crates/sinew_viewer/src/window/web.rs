@@ -108,7 +108,6 @@ pub fn scenes() -> String {
 
 /// Shows a scene with settings `key=value` in a canvas; without a scene the demo. `steps` are taken at full speed, and then the hash is
 /// shown. `panels` are `all`, `few` (without the list of scenes) or `none`; without panels keys and the wheel move the page as well.
-/// page as well.
 ///
 /// # Errors
 /// One line: there is no such scene, the scene refuses a setting, or the page has no event loop.

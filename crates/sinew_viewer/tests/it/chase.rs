@@ -58,7 +58,7 @@ fn outermost(sample: Sample, aspect: f32, follows: bool, pushes: bool) -> f32 {
 }
 
 #[test]
-fn the_subject_stays_in_the_picture() {
+fn following_camera_keeps_the_subject_in_the_picture() {
     for aspect in ASPECTS {
         for sample in Sample::ALL {
             let most = outermost(sample, aspect, true, false);
@@ -73,6 +73,6 @@ fn the_subject_stays_in_the_picture() {
 
 /// The test above can fail: a camera that does not move loses the subject.
 #[test]
-fn a_camera_that_stands_loses_it() {
+fn fixed_camera_loses_the_subject() {
     assert!(outermost(Sample::Mannequin, 1.5, false, false) > 0.6);
 }

@@ -17,7 +17,7 @@ const SIZE: [u32; 2] = [1280, 760];
 pub fn bench(name: &str) -> Option<Headless> {
     let mut viewer = viewer("pendulum", SIZE)?;
     let path = folder(name).join("mannequin.glb");
-    std::fs::write(&path, mannequin_glb()).expect("the folder is there");
+    std::fs::write(&path, mannequin_glb()).expect("the folder exists");
     viewer.app_mut().open_file(&path);
     settled(&mut viewer);
     Some(viewer)
@@ -28,13 +28,14 @@ fn def(viewer: &Headless) -> &RagdollDef {
 }
 
 fn place(def: &RagdollDef, role: &str) -> usize {
-    def.bodies.iter().position(|body| body.role == role).expect("it has one")
+    def.bodies.iter().position(|body| body.role == role).expect("the ragdoll has this body")
 }
 
 /// Returns the ranges of the joint of a body, degrees.
 fn degrees(def: &RagdollDef, role: &str) -> [Option<[f32; 2]>; 3] {
     let child = place(def, role);
-    let joint = def.joints.iter().find(|joint| joint.child == child).expect("it has a parent");
+    let joint =
+        def.joints.iter().find(|joint| joint.child == child).expect("the body has a joint to its parent");
     limits(&joint.kind).map(|range| range.map(|Range { lo, hi }| [lo.to_degrees(), hi.to_degrees()]))
 }
 
@@ -45,7 +46,7 @@ pub fn choose(viewer: &mut Headless, role: &str) {
         viewer.key(Key::CloseBracket);
         viewer.frame().expect("the card draws");
     }
-    let line = viewer.app().message().expect("it says whom").to_owned();
+    let line = viewer.app().message().expect("the message names the body").to_owned();
     assert!(line.starts_with(&format!("chose {role} ")), "{line}");
 }
 
@@ -56,11 +57,11 @@ fn saved(viewer: &mut Headless) -> RagdollDef {
     let files = viewer.app_mut().take_files();
     let [file] = &files[..] else { panic!("{} files", files.len()) };
     assert_eq!(file.name, "mannequin.sinew.json");
-    read_ragdoll(&file.bytes).expect("it can be read again")
+    read_ragdoll(&file.bytes).expect("the written ragdoll can be read")
 }
 
 #[test]
-fn keys_change_a_limit_which_is_saved() {
+fn limit_changed_by_keys_is_saved() {
     let Some(mut viewer) = bench("edited_by_keys") else { return };
     choose(&mut viewer, "leftUpperArm");
     let before = degrees(def(&viewer), "leftUpperArm");
@@ -80,7 +81,9 @@ fn keys_change_a_limit_which_is_saved() {
     let ragdoll = viewer.app().session().ragdoll();
     let arm = ragdoll[place(def(&viewer), "leftUpperArm")];
     let joint = world.joints_of(arm).map(|id| world.joint(id)).find(|joint| joint.body_b == arm);
-    let [Some(range), ..] = limits(&joint.expect("it has a parent").kind) else { panic!("it swings") };
+    let [Some(range), ..] = limits(&joint.expect("the body has a joint to its parent").kind) else {
+        panic!("it swings")
+    };
     assert!((range.hi.to_degrees() - y[1]).abs() < 0.01);
 }
 
@@ -93,7 +96,7 @@ fn dragging_a_handle_changes_a_limit() {
     settled(&mut viewer);
     let list = viewer.app().handles();
     println!("{list:?}");
-    let (_, at) = list.iter().find(|(name, _)| *name == "swing z high").copied().expect("it has that handle");
+    let (_, at) = list.iter().find(|(name, _)| *name == "swing z high").copied().expect("the handle exists");
     viewer.move_to(at.x, at.y);
     viewer.button(at.x, at.y, true);
     viewer.frame().expect("the card draws");
@@ -111,17 +114,21 @@ fn dragging_a_handle_changes_a_limit() {
     let [_, Some(new), _] = after.map(|it| it.map(|[_, hi]| hi)) else { panic!("it swings") };
     assert!((z - new).abs() > 3.0, "{z}° and then {new}°");
     settled(&mut viewer);
-    let (_, now) =
-        viewer.app().handles().into_iter().find(|(name, _)| *name == "swing z high").expect("it is there");
+    let (_, now) = viewer
+        .app()
+        .handles()
+        .into_iter()
+        .find(|(name, _)| *name == "swing z high")
+        .expect("the handle exists");
     let (was, goal) = (at, egui::pos2(at.x + 40.0, at.y + 30.0));
     assert!((now - goal).length() < (was - goal).length(), "moved from {was:?} to {now:?}, target {goal:?}");
     // Dragging the side of the shape outward enlarges the body.
     let (_, at) =
-        viewer.app().handles().into_iter().find(|(name, _)| *name == "size").expect("it has a size");
+        viewer.app().handles().into_iter().find(|(name, _)| *name == "size").expect("the handle exists");
     let center = {
         let session = viewer.app().session();
         let body = session.ragdoll()[place(def(&viewer), "rightUpperLeg")];
-        viewer.app().on_screen(session.world().center_of_mass(body)).expect("it is seen")
+        viewer.app().on_screen(session.world().center_of_mass(body)).expect("the body is visible")
     };
     let volume =
         |viewer: &Headless| def(viewer).bodies[place(def(viewer), "rightUpperLeg")].shape.bounding_radius();
@@ -142,14 +149,15 @@ fn dragging_a_handle_changes_a_limit() {
 
 /// Roles, shapes and masses: each change builds the rig anew.
 #[test]
-fn roles_shapes_and_masses() {
+fn edited_roles_shapes_and_masses_apply() {
     let path = folder("edited_all").join("mannequin.glb");
-    std::fs::write(&path, mannequin_glb()).expect("the folder is there");
-    let mut session = Session::start(Subject::file(&path).expect("it is there")).expect("it is a character");
+    std::fs::write(&path, mannequin_glb()).expect("the folder exists");
+    let mut session = Session::start(Subject::file(&path).expect("the file can be read"))
+        .expect("the character can be opened");
     let def = |session: &Session| session.workbench().expect("a ragdoll").def().clone();
     let head = place(&def(&session), "head");
     let wish = BoneSettings { shape: Some(ShapeWish::Sphere), mass: Some(7.5), ..BoneSettings::default() };
-    session.edit(head, wish).expect("it can be built");
+    session.edit(head, wish).expect("the edited ragdoll can be built");
     let built = def(&session);
     assert!(matches!(built.bodies[head].shape, sinew::physics::Shape::Sphere { .. }));
     assert!((built.bodies[head].mass.mass - 7.5).abs() < 1e-3);
@@ -160,14 +168,14 @@ fn roles_shapes_and_masses() {
     );
     // A body without hips is refused with a message, and nothing changes.
     let dropped = BoneSettings { body: Some(BodyWish::Drop), ..BoneSettings::default() };
-    let line = session.edit(place(&built, "hips"), dropped).expect_err("it hangs on its hips");
+    let line = session.edit(place(&built, "hips"), dropped).expect_err("the hips cannot be removed");
     println!("{line}");
     assert_eq!(def(&session), built);
     // Another role: the left shin gets the given one.
     let (shin, foot) = (place(&built, "leftLowerLeg"), place(&built, "leftFoot"));
     let bone = built.bodies[foot].bone.clone();
     let told = BoneSettings { role: Some(Role::Toes(Side::Left)), ..BoneSettings::default() };
-    session.edit(foot, told).expect("it can be built");
+    session.edit(foot, told).expect("the edited ragdoll can be built");
     let other = def(&session);
     let now = other.bodies.iter().find(|body| body.bone == bone || body.role == "leftToes");
     println!("{bone}: {now:?}");
@@ -178,25 +186,26 @@ fn roles_shapes_and_masses() {
     assert_eq!(other.bodies[shin].role, "leftLowerLeg");
     let foot = other.bodies.iter().position(|body| body.bone == bone);
     if let Some(foot) = foot {
-        session.edit(foot, BoneSettings::default()).expect("it can be built");
+        session.edit(foot, BoneSettings::default()).expect("the edited ragdoll can be built");
         assert_eq!(def(&session).bodies.len(), built.bodies.len());
     }
     assert_eq!(session.workbench().expect("a ragdoll").wish(head), wish);
-    session.edit(head, BoneSettings::default()).expect("it can be built");
+    session.edit(head, BoneSettings::default()).expect("the edited ragdoll can be built");
     assert!(def(&session).bodies[head].mass.mass < 6.0);
 }
 
 /// A ragdoll file has no rig: masses and limits change, shapes and roles are refused with a message.
 #[test]
-fn a_definition_without_a_rig() {
+fn definition_without_a_rig_rejects_changes_of_shape() {
     let mannequin = sinew::mannequin::character();
     let path = folder("edited_file").join("mannequin.sinew.json");
-    std::fs::write(&path, write_ragdoll(&mannequin.ragdoll)).expect("the folder is there");
-    let mut session = Session::start(Subject::file(&path).expect("it is there")).expect("it is a ragdoll");
+    std::fs::write(&path, write_ragdoll(&mannequin.ragdoll)).expect("the folder exists");
+    let mut session = Session::start(Subject::file(&path).expect("the file can be read"))
+        .expect("the ragdoll can be opened");
     let arm = place(&mannequin.ragdoll, "leftLowerArm");
     let wish =
         BoneSettings { mass: Some(3.0), twist: Some(Range::degrees(-5.0, 60.0)), ..BoneSettings::default() };
-    session.edit(arm, wish).expect("it can be");
+    session.edit(arm, wish).expect("the edited ragdoll can be built");
     let bench = session.workbench().expect("a ragdoll");
     assert!((bench.def().bodies[arm].mass.mass - 3.0).abs() < 1e-6);
     let twist = degrees(bench.def(), "leftLowerArm")[2].expect("an elbow has an angle");

@@ -38,7 +38,7 @@ fn every_scene_opens_and_closes() {
     let mut early = None;
     for round in 0..rounds {
         for scene in registry() {
-            let subject = Subject::scene(scene.name, &[]).expect("it is in the registry");
+            let subject = Subject::scene(scene.name, &[]).expect("the scene is in the registry");
             let start = Instant::now();
             viewer.app_mut().open(subject);
             viewer.frame().expect("the card draws");
@@ -75,8 +75,8 @@ fn every_scene_opens_and_closes() {
 #[ignore = "a measurement, which asserts no time: `cargo xtask ci --full`"]
 fn a_frame_with_a_hundred_figures() {
     let Some(gpu) = gpu() else { return };
-    let subject = Subject::scene("street", &["n=100".to_owned()]).expect("there is such a scene");
-    let mut session = Session::start(subject).expect("it starts");
+    let subject = Subject::scene("street", &["n=100".to_owned()]).expect("the scene exists");
+    let mut session = Session::start(subject).expect("the scene can be opened");
     for _ in 0..60 {
         session.step();
     }

@@ -15,23 +15,23 @@ use std::path::{Path, PathBuf};
 pub fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     if folder.exists() {
-        std::fs::remove_dir_all(&folder).expect("it is ours");
+        std::fs::remove_dir_all(&folder).expect("the folder can be removed");
     }
-    std::fs::create_dir_all(&folder).expect("the target folder is there");
+    std::fs::create_dir_all(&folder).expect("the target folder exists");
     folder
 }
 
 /// Returns the mannequin as a file.
 pub fn mannequin_glb() -> Vec<u8> {
     let mannequin = sinew::mannequin::mannequin();
-    write_gltf(&mannequin.rig, &mannequin.clips).expect("it can be written")
+    write_gltf(&mannequin.rig, &mannequin.clips).expect("the rig can be written as glTF")
 }
 
 #[test]
-fn a_character_that_is_dropped_falls() {
+fn dropped_character_falls() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let path = folder("dropped_character").join("mannequin.glb");
-    std::fs::write(&path, mannequin_glb()).expect("the folder is there");
+    std::fs::write(&path, mannequin_glb()).expect("the folder exists");
     viewer.app_mut().open_file(&path);
     let session = viewer.app().session();
     assert_eq!(session.subject().title(), "mannequin.glb");
@@ -60,13 +60,13 @@ fn falls(viewer: &mut Headless, name: &str) {
 
 /// A dropped ragdoll without its rig: its bodies fall.
 #[test]
-fn a_ragdoll_that_is_dropped_falls() {
+fn dropped_ragdoll_falls() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let mannequin = sinew::mannequin::mannequin();
-    let analysis = analyze(&mannequin.rig).expect("it has a skin");
+    let analysis = analyze(&mannequin.rig).expect("the rig has a skin");
     let (def, _) = build(&mannequin.rig, &analysis, &BuildOptions::default()).expect("and bones");
     let path = folder("dropped_ragdoll").join("mannequin.sinew.json");
-    std::fs::write(&path, write_ragdoll(&def)).expect("the folder is there");
+    std::fs::write(&path, write_ragdoll(&def)).expect("the folder exists");
     viewer.app_mut().open_file(&path);
     let session = viewer.app().session();
     assert_eq!(session.subject().title(), "mannequin.sinew.json");
@@ -76,16 +76,16 @@ fn a_ragdoll_that_is_dropped_falls() {
 
 /// Bytes with names, as a page passes them: a glTF finds the file beside it, and has the bits of the same file on a disk.
 #[test]
-fn dropped_bytes_load_as_files_do() {
+fn dropped_bytes_load_like_files() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let folder = folder("dropped_on_a_page");
     let glb = mannequin_glb();
     let (json, binary) = parts(&glb);
-    let mut json: serde_json::Value = serde_json::from_slice(json).expect("it is JSON");
+    let mut json: serde_json::Value = serde_json::from_slice(json).expect("the chunk is JSON");
     json["buffers"][0]["uri"] = "mannequin.bin".into();
     let json = json.to_string().into_bytes();
-    std::fs::write(folder.join("mannequin.gltf"), &json).expect("the folder is there");
-    std::fs::write(folder.join("mannequin.bin"), binary).expect("the folder is there");
+    std::fs::write(folder.join("mannequin.gltf"), &json).expect("the folder exists");
+    std::fs::write(folder.join("mannequin.bin"), binary).expect("the folder exists");
     viewer.app_mut().open_file(&folder.join("mannequin.gltf"));
     falls(&mut viewer, "with_a_folder");
     let hash = viewer.app().session().world().hash();
@@ -121,7 +121,7 @@ fn unreadable_files_give_a_message_and_change_nothing() {
     ];
     for (name, bytes) in nonsense {
         let path = folder.join(name);
-        std::fs::write(&path, bytes).expect("the folder is there");
+        std::fs::write(&path, bytes).expect("the folder exists");
         viewer.app_mut().open_file(&path);
         let line = viewer.app().message().expect("a line").to_owned();
         println!("{line}");
@@ -132,11 +132,12 @@ fn unreadable_files_give_a_message_and_change_nothing() {
 
 /// A motion without a skin plays as bones.
 #[test]
-fn a_bvh_that_is_dropped_plays() {
+fn dropped_bvh_plays() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let mannequin = sinew::mannequin::mannequin();
     let walk = &mannequin.clips[0];
-    let bvh = write_bvh(&mannequin.rig, walk, &BvhWriteOptions::default()).expect("it can be written");
+    let bvh =
+        write_bvh(&mannequin.rig, walk, &BvhWriteOptions::default()).expect("the clip can be written as BVH");
     let file = NamedFile { name: "walk.bvh".into(), bytes: bvh.text.into_bytes() };
     viewer.app_mut().open_dropped(vec![file]);
     assert_eq!(viewer.app().session().subject().title(), "walk.bvh", "{:?}", viewer.app().message());
@@ -144,7 +145,7 @@ fn a_bvh_that_is_dropped_plays() {
     let head = |viewer: &Headless| {
         let figures = viewer.app().session().instance().figures();
         let rig = figures[0].rig;
-        let head = rig.joints.iter().position(|joint| joint.name == "head").expect("it has a head");
+        let head = rig.joints.iter().position(|joint| joint.name == "head").expect("the rig has this joint");
         figures[0].world_from_joint[head].translation
     };
     let before = head(&viewer);
@@ -161,11 +162,11 @@ fn a_bvh_that_is_dropped_plays() {
 
 /// The saved file has the played motion as an additional clip with the same joint poses.
 #[test]
-fn the_played_motion_is_saved_as_glb() {
+fn played_motion_is_saved_as_glb() {
     let glb = mannequin_glb();
     let file = NamedFile { name: "mannequin.glb".into(), bytes: glb.clone() };
-    let subject = Subject::dropped(vec![file]).expect("it is a character");
-    let mut session = Session::start(subject).expect("it is a character");
+    let subject = Subject::dropped(vec![file]).expect("the file is a character");
+    let mut session = Session::start(subject).expect("the character can be opened");
     assert!(session.to_glb().expect_err("no step yet").contains("nothing"));
     let poses: Vec<Vec<Affine>> = (0..=90)
         .map(|i| {
@@ -175,11 +176,12 @@ fn the_played_motion_is_saved_as_glb() {
             session.instance().figures()[0].world_from_joint.to_vec()
         })
         .collect();
-    let written = session.to_glb().expect("it can be written");
+    let written = session.to_glb().expect("the session can be written as GLB");
     assert_eq!(written.name, "mannequin-played.glb");
     let mut none = no_files;
-    let document = read_gltf(&written.bytes, ReadOptions::default(), &mut none).expect("it can be read");
-    let clip = document.clips.last().expect("it has clips");
+    let document =
+        read_gltf(&written.bytes, ReadOptions::default(), &mut none).expect("the glTF can be read");
+    let clip = document.clips.last().expect("the file has clips");
     assert_eq!((document.clips.len(), clip.name.as_str()), (5, "played"));
     assert!((clip.duration - 1.5).abs() < 1e-4, "{} s", clip.duration);
     // In the file the character stands upright at the world's origin with its soles on the floor; the unit is the metre.

@@ -9,8 +9,8 @@ const SIZE: [u32; 2] = [1280, 760];
 
 /// Returns a paused viewer of a scene with pictures of a size in pixels.
 pub fn viewer(scene: &str, size: [u32; 2]) -> Option<Headless> {
-    let subject = Some(Subject::scene(scene, &[]).expect("there is such a scene"));
-    let app = App::new(Options { subject, paused: true, ..Options::default() }).expect("it starts");
+    let subject = Some(Subject::scene(scene, &[]).expect("the scene exists"));
+    let app = App::new(Options { subject, paused: true, ..Options::default() }).expect("the viewer starts");
     Some(Headless::new(app, gpu()?, size))
 }
 
@@ -37,7 +37,7 @@ fn scenes_and_panels() {
 }
 
 #[test]
-fn the_search_opens_a_scene() {
+fn search_opens_a_scene() {
     let Some(mut viewer) = viewer("pendulum", SIZE) else { return };
     settled(&mut viewer);
     viewer.text("/");
@@ -52,13 +52,13 @@ fn the_search_opens_a_scene() {
 
 /// A drag pulls the body under the mouse, is recorded, and the recording replays to the same bits.
 #[test]
-fn a_drag_pulls_a_body_and_is_recorded() {
+fn drag_pulls_a_body_and_is_recorded() {
     let Some(mut viewer) = viewer("stack", SIZE) else { return };
     settled(&mut viewer);
     let world = viewer.app().session().world();
     let body = world.body_ids().filter(|&id| world.mass(id).mass > 0.0).last().expect("something moves");
     let before = world.transform(body).translation;
-    let at = viewer.app().on_screen(before).expect("it is seen");
+    let at = viewer.app().on_screen(before).expect("the body is visible");
     viewer.move_to(at.x, at.y);
     viewer.frame().expect("the card draws");
     viewer.button(at.x, at.y, true);
@@ -76,7 +76,8 @@ fn a_drag_pulls_a_body_and_is_recorded() {
     assert!(moved > 0.1, "the character moved only {moved} m");
     let recording = session.recording().expect("a scene is recorded");
     assert!(recording.steps.iter().any(|step| !step.operations.is_empty()));
-    let mut replay = sinew_scenes::recording::Replay::start(recording.clone()).expect("it starts");
+    let mut replay =
+        sinew_scenes::recording::Replay::start(recording.clone()).expect("the recording can be replayed");
     let mut steps = 0;
     while let Some(step) = replay.step() {
         assert_eq!(step.found, step.recorded, "step {}", step.step);
@@ -86,7 +87,7 @@ fn a_drag_pulls_a_body_and_is_recorded() {
 }
 
 #[test]
-fn a_ball_is_thrown_and_layers_are_drawn() {
+fn ball_is_thrown_and_layers_are_drawn() {
     let Some(mut viewer) = viewer("ragdoll_drop", SIZE) else { return };
     let plain = settled(&mut viewer);
     let bodies = viewer.app().session().world().body_ids().count();
@@ -107,7 +108,7 @@ fn a_ball_is_thrown_and_layers_are_drawn() {
 
 /// A file that cannot be shown gives a message, and the viewer continues.
 #[test]
-fn a_bad_file_gives_a_message() {
+fn invalid_file_gives_a_message() {
     let Some(mut viewer) = viewer("pendulum", SIZE) else { return };
     viewer.app_mut().open_file("nowhere.json".as_ref());
     assert_eq!(viewer.app().message(), Some("nowhere.json: no such file"));
@@ -118,7 +119,7 @@ fn a_bad_file_gives_a_message() {
 /// W makes the scene's character walk away from the camera, releasing W stops it, and the recording replays
 /// the same.
 #[test]
-fn keys_walk_a_character() {
+fn keys_move_a_walking_character() {
     let Some(mut viewer) = viewer("street", [640, 360]) else { return };
     settled(&mut viewer);
     let place = |viewer: &Headless| viewer.app().session().instance().steered().expect("somebody is led");
@@ -148,8 +149,9 @@ fn keys_walk_a_character() {
     }
     assert!((place(&viewer) - stands).length() < 0.02, "it stands");
     let recording = viewer.app().session().recording().expect("a scene is recorded").to_bytes();
-    let recording = sinew_scenes::recording::Recording::read(&recording).expect("it can be read again");
-    let mut replay = sinew_scenes::recording::Replay::start(recording).expect("it starts");
+    let recording = sinew_scenes::recording::Recording::read(&recording).expect("the recording can be read");
+    let mut replay =
+        sinew_scenes::recording::Replay::start(recording).expect("the recording can be replayed");
     while let Some(step) = replay.step() {
         assert_eq!(step.found, step.recorded, "step {}", step.step);
     }
@@ -158,10 +160,10 @@ fn keys_walk_a_character() {
 
 /// The first scene opens with characters drawn with their skin, which stay in the picture.
 #[test]
-fn the_first_scene_stays_in_sight() {
+fn first_scene_stays_in_view() {
     let Some(gpu) = gpu() else { return };
     let options = Options { hides_times: true, steps: Some(300), ..Options::default() };
-    let app = App::new(options).expect("it starts");
+    let app = App::new(options).expect("the viewer starts");
     assert!(!app.session().instance().figures().is_empty());
     let mut viewer = Headless::new(app, gpu, SIZE);
     settled(&mut viewer);
@@ -182,8 +184,9 @@ fn the_first_scene_stays_in_sight() {
 /// A thrown ball is undone and done again; edits of gravity too.
 #[test]
 fn operations_are_undone() {
-    let subject = Some(Subject::scene("stack", &[]).expect("there is such a scene"));
-    let mut app = App::new(Options { subject, paused: true, ..Options::default() }).expect("it starts");
+    let subject = Some(Subject::scene("stack", &[]).expect("the scene exists"));
+    let mut app =
+        App::new(Options { subject, paused: true, ..Options::default() }).expect("the viewer starts");
     (0..10).for_each(|_| app.step());
     let before = app.session().world().hash();
     let mut session_bodies = app.session().world().body_ids().count();
@@ -197,10 +200,11 @@ fn operations_are_undone() {
     assert_eq!((app.session().world().hash(), app.message()), (after, Some("done again")));
     session_bodies += 1;
     assert_eq!(app.session().world().body_ids().count(), session_bodies);
-    // The recording is that of the run as it is now.
+    // The recording matches the run after undo and redo.
     let recording = app.session().recording().expect("a scene is recorded").clone();
     assert_eq!(recording.steps.len(), 40);
-    let mut replay = sinew_scenes::recording::Replay::start(recording).expect("it starts");
+    let mut replay =
+        sinew_scenes::recording::Replay::start(recording).expect("the recording can be replayed");
     while let Some(step) = replay.step() {
         assert_eq!(step.found, step.recorded, "step {}", step.step);
     }

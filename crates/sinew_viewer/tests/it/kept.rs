@@ -79,10 +79,10 @@ fn is_alike((tile, far): (f64, f64)) -> bool {
 fn read(name: &str) -> Image {
     let bytes = std::fs::read(path(name)).expect("the picture is in tests/pictures");
     assert!(bytes.len() <= MOST_BYTES, "{name} has {} bytes", bytes.len());
-    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("it is a PNG");
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("the file is a PNG");
     let (width, height) = (reader.info().width, reader.info().height);
-    let mut rgba = vec![0; reader.output_buffer_size().expect("it is small")];
-    let info = reader.next_frame(&mut rgba).expect("it is whole");
+    let mut rgba = vec![0; reader.output_buffer_size().expect("the picture fits into memory")];
+    let info = reader.next_frame(&mut rgba).expect("the picture is complete");
     rgba.truncate(info.buffer_size());
     if info.color_type == png::ColorType::Rgb {
         rgba = rgba.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect();
@@ -96,8 +96,8 @@ fn check(name: &str, picture: &Image, changed: &Image) {
     let png =
         |image: &Image| encode::encode(PictureFormat::Png, std::slice::from_ref(image), 1).expect("a PNG");
     if std::env::var_os("SINEW_BLESS").is_some() {
-        std::fs::create_dir_all(path(name).parent().expect("a folder")).expect("it can be made");
-        std::fs::write(path(name), png(&picture)).expect("it can be written");
+        std::fs::create_dir_all(path(name).parent().expect("a folder")).expect("the folder can be created");
+        std::fs::write(path(name), png(&picture)).expect("the file can be written");
     }
     look(name, &picture);
     look(&format!("{name}_changed"), &changed);
@@ -112,7 +112,7 @@ fn check(name: &str, picture: &Image, changed: &Image) {
     );
     if !is_alike(found) {
         let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
-        std::fs::write(&place, png(&picture)).expect("the target folder is there");
+        std::fs::write(&place, png(&picture)).expect("the target folder exists");
         panic!("{} differs from the stored picture: {found:?}; SINEW_BLESS=1 replaces it", place.display());
     }
     assert!(!is_alike(other), "{name}: the comparison misses a change: {other:?}");
@@ -121,14 +121,14 @@ fn check(name: &str, picture: &Image, changed: &Image) {
 /// Returns a paused viewer of a subject without times.
 fn open(subject: Option<Subject>) -> Option<Headless> {
     let options = Options { subject, paused: true, hides_times: true, ..Options::default() };
-    let mut viewer = Headless::new(App::new(options).expect("it starts"), gpu()?, SIZE);
+    let mut viewer = Headless::new(App::new(options).expect("the viewer starts"), gpu()?, SIZE);
     settled(&mut viewer);
     Some(viewer)
 }
 
 fn scene(name: &str, settings: &[&str], steps: u32) -> Option<Headless> {
     let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
-    let mut viewer = open(Some(Subject::scene(name, &settings).expect("there is such a scene")))?;
+    let mut viewer = open(Some(Subject::scene(name, &settings).expect("the scene exists")))?;
     step(&mut viewer, steps);
     Some(viewer)
 }

@@ -36,10 +36,10 @@ fn difference(a: &Image, b: &Image) -> (f64, f64) {
 /// Writes a picture to the folder of `SINEW_LOOK`, if it is set.
 pub fn look(name: &str, image: &Image) {
     if let Some(folder) = std::env::var_os("SINEW_LOOK") {
-        let bytes =
-            encode::encode(PictureFormat::Png, std::slice::from_ref(image), 1).expect("it can be encoded");
+        let bytes = encode::encode(PictureFormat::Png, std::slice::from_ref(image), 1)
+            .expect("the picture can be encoded");
         std::fs::write(std::path::Path::new(&folder).join(format!("{name}.png")), bytes)
-            .expect("the folder is there");
+            .expect("the folder exists");
     }
 }
 
@@ -96,7 +96,7 @@ pub fn camera() -> Camera {
 }
 
 #[test]
-fn graphics_card_and_processor_draw_the_same_picture() {
+fn gpu_and_cpu_draw_the_same_picture() {
     let Some(gpu) = gpu() else { return };
     let sun = Sun { shadow_radius: 4.0, ..Sun::default() };
     let mut scene = Scene { sun, ..Scene::default() };
@@ -122,10 +122,10 @@ fn graphics_card_and_processor_draw_the_same_picture() {
 }
 
 #[test]
-fn a_skin_is_where_its_joints_are() {
+fn skin_is_drawn_at_its_joints() {
     let Some(gpu) = gpu() else { return };
-    let subject = Subject::scene("two_tracks", &[]).expect("there is such a scene");
-    let mut session = Session::start(subject).expect("it starts");
+    let subject = Subject::scene("two_tracks", &[]).expect("the scene exists");
+    let mut session = Session::start(subject).expect("the scene can be opened");
     for _ in 0..40 {
         session.step();
     }

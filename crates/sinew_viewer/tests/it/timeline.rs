@@ -12,7 +12,7 @@ const SIZE: [u32; 2] = [1280, 760];
 
 /// Returns a recording of a scene; a body is struck before a step, if one is given.
 pub fn recorded(scene: &str, steps: u64, strike: Option<u64>) -> Recording {
-    let mut recorder = Recorder::start(scene, &[]).expect("there is such a scene");
+    let mut recorder = Recorder::start(scene, &[]).expect("the scene exists");
     for step in 0..steps {
         if strike == Some(step) {
             let world = recorder.instance().world();
@@ -42,7 +42,7 @@ fn seek(session: &mut Session, step: u64) {
 fn seeking_gives_the_same_bits() {
     for scene in ["stack", "pendulum", "rope_on_box", "stairs", "two_tracks", "flag", "dominoes"] {
         let recording = recorded(scene, 130, Some(40));
-        let mut session = Session::start(played(&recording)).expect("it is ours");
+        let mut session = Session::start(played(&recording)).expect("the recording can be opened");
         let mut figures = vec![session.metrics()];
         while session.step() {
             figures.push(session.metrics());
@@ -67,11 +67,11 @@ fn seeking_gives_the_same_bits() {
 }
 
 #[test]
-fn a_second_run_is_a_ghost() {
+fn second_run_is_drawn_as_a_ghost() {
     let (plain, struck) = (recorded("stack", 100, None), recorded("stack", 100, Some(30)));
-    let mut session = Session::start(played(&plain)).expect("it is ours");
+    let mut session = Session::start(played(&plain)).expect("the recording can be opened");
     session.set_ghost("struck.sinewrec", struck).expect("both recordings are of the same scene");
-    let ghost = session.ghost().expect("it has one");
+    let ghost = session.ghost().expect("the session has a ghost");
     let Some(Difference::State { step, body: Some((_, [a, b])) }) = ghost.difference().cloned() else {
         panic!("{:?}", ghost.difference())
     };
@@ -79,20 +79,21 @@ fn a_second_run_is_a_ghost() {
     assert_ne!(a, b);
     for step in [100, 20, 30, 31] {
         seek(&mut session, step);
-        let ghost = session.ghost().expect("it has one").world();
+        let ghost = session.ghost().expect("the session has a ghost").world();
         assert_eq!(ghost.step_count(), step);
         assert_eq!(ghost.hash() == session.world().hash(), step < 31, "step {step}");
     }
     let other = recorded("pendulum", 10, None);
     let error = session.set_ghost("other.sinewrec", other).expect_err("of another scene");
     assert!(error.to_string().contains("other.sinewrec"), "{error}");
-    let mut live = Session::start(Subject::scene("stack", &[]).expect("a scene")).expect("it starts");
+    let mut live =
+        Session::start(Subject::scene("stack", &[]).expect("a scene")).expect("the scene can be opened");
     assert!(live.set_ghost("plain.sinewrec", plain).is_err());
 }
 
 /// A button puts the current run on a timeline; keys and the mouse seek in it.
 #[test]
-fn the_timeline_is_dragged() {
+fn dragging_the_timeline_seeks() {
     let Some(mut viewer) = viewer("stack", SIZE) else { return };
     let recording = recorded("stack", 100, Some(10));
     viewer.app_mut().open(played(&recording));
@@ -113,7 +114,7 @@ fn the_timeline_is_dragged() {
     arrive(&mut viewer);
     assert_eq!(at(&viewer), 99);
     viewer.app_mut().compare_with("plain.sinewrec", recorded("stack", 100, None));
-    let line = viewer.app().message().expect("it says so").to_owned();
+    let line = viewer.app().message().expect("the viewer shows a message").to_owned();
     assert!(line.contains("differs from step 11 on: body "), "{line}");
     // The bar is above the buttons, right of the scenes and of the step number.
     let area = viewer.app().area();

@@ -20,7 +20,7 @@ struct Player {
 /// Replaces Bevy's animation, without curves: writes joints, regardless of other writers.
 fn play(player: Res<Player>, mut transforms: Query<&mut Transform>) {
     for (index, (&joint, local)) in player.joints.iter().zip(&player.pose).enumerate() {
-        let mut transform = transforms.get_mut(joint).expect("it is there");
+        let mut transform = transforms.get_mut(joint).expect("the joint has a transform");
         if index != player.still {
             let [x, y, z, w] = [local.rotation.x, local.rotation.y, local.rotation.z, local.rotation.w];
             transform.translation = local.translation;
@@ -51,10 +51,11 @@ impl Walker {
         let entity = app.world_mut().spawn((CharacterBody(def.clone()), BevyAnimation { travels })).id();
         let joints = scene(&mut app, entity, &def.rig);
         for (&joint, rest) in joints.iter().zip(def.rest()) {
-            app.world_mut().get_mut::<Transform>(joint).expect("it has one").translation = rest.translation;
+            app.world_mut().get_mut::<Transform>(joint).expect("the entity has this component").translation =
+                rest.translation;
         }
         let still = def.rig.joints.iter().position(|joint| joint.name.to_lowercase().contains("head"));
-        let (still, pose) = (still.expect("it has a head"), def.rest().to_vec());
+        let (still, pose) = (still.expect("the character has a head"), def.rest().to_vec());
         app.insert_resource(Player { joints, pose, still });
         let play = play.in_set(AnimationSystems).before(TransformSystems::Propagate);
         app.add_systems(PostUpdate, play.ambiguous_with_all());
@@ -64,7 +65,7 @@ impl Walker {
     /// Runs a frame, in which the player advances the walk.
     fn frame(&mut self) {
         let def = &self.def;
-        let walk = &def.motions().clips[def.motions().looped.expect("it walks")];
+        let walk = &def.motions().clips[def.motions().looped.expect("the character has a looped clip")];
         let mut pose = def.rest().to_vec();
         let time = self.given.len() as f32 * DT % walk.duration;
         sample(walk, &def.rig, time, Wrap::Loop, &mut pose);
@@ -84,7 +85,7 @@ impl Walker {
     }
 
     fn handle(&self) -> &CharacterHandle {
-        self.app.world().get::<CharacterHandle>(self.entity).expect("it has one")
+        self.app.world().get::<CharacterHandle>(self.entity).expect("the entity has this component")
     }
 
     /// Returns the angle to the pose of the frame before the last, radians: a step runs before its frame's
@@ -101,7 +102,10 @@ impl Walker {
 
     fn go_limp(&mut self) {
         self.app.world_mut().resource_scope(|world, mut physics: Mut<Physics>| {
-            world.get_mut::<CharacterHandle>(self.entity).expect("it has one").go_limp(&mut physics);
+            world
+                .get_mut::<CharacterHandle>(self.entity)
+                .expect("the entity has this component")
+                .go_limp(&mut physics);
         });
     }
 }
@@ -121,7 +125,11 @@ fn character_follows_bevys_animation() {
     assert!(most > 0.3, "the walk moves the joint by only {most} rad");
     // The character moves at the requested velocity, not by its clips.
     assert!(walker.handle().world_from_character().translation.length() < 0.01);
-    let mut handle = walker.app.world_mut().get_mut::<CharacterHandle>(walker.entity).expect("it has one");
+    let mut handle = walker
+        .app
+        .world_mut()
+        .get_mut::<CharacterHandle>(walker.entity)
+        .expect("the entity has this component");
     handle.set_move(Vec3::Z);
     (0..60).for_each(|_| walker.frame());
     let way = walker.handle().world_from_character().translation;
@@ -142,7 +150,8 @@ fn character_animated_by_bevy_falls_and_gets_up() {
     assert_eq!(walker.handle().state(), State::Limp);
     let player = walker.app.world().resource::<Player>();
     for (&joint, local) in player.joints.iter().zip(walker.handle().pose()) {
-        let shown = walker.app.world().get::<Transform>(joint).expect("it has one").rotation;
+        let shown =
+            walker.app.world().get::<Transform>(joint).expect("the entity has this component").rotation;
         let of = Quat::from_xyzw(local.rotation.x, local.rotation.y, local.rotation.z, local.rotation.w);
         assert!(shown.angle_between(of) < 1e-3);
     }

@@ -45,13 +45,13 @@ fn hero(app: &mut App, def: &Arc<CharacterDef>, place: Vec3) -> Entity {
 }
 
 fn handle(app: &App, entity: Entity) -> &CharacterHandle {
-    app.world().get::<CharacterHandle>(entity).expect("it has one")
+    app.world().get::<CharacterHandle>(entity).expect("the entity has this component")
 }
 
 fn hit(app: &mut App, entity: Entity, impulse: Vec3) {
     app.world_mut().resource_scope(|world, mut physics: Mut<Physics>| {
-        let mut handle = world.get_mut::<CharacterHandle>(entity).expect("it has one");
-        let chest = handle.def().body_named("chest").expect("it has a chest");
+        let mut handle = world.get_mut::<CharacterHandle>(entity).expect("the entity has this component");
+        let chest = handle.def().body_named("chest").expect("the character has this body");
         handle.hit(&mut physics, chest, impulse);
     });
 }
@@ -74,7 +74,7 @@ fn characters_have_the_same_bits_as_in_the_library() {
         fell |= characters[1].state() == State::Limp;
         if step == 60 {
             hit(&mut app, entities[1], Vec3::new(60.0, 0.0, -60.0));
-            let chest = def.body_named("chest").expect("it has a chest");
+            let chest = def.body_named("chest").expect("the character has this body");
             characters[1].hit(&mut world, chest, Vec3::new(60.0, 0.0, -60.0));
         }
         app.update();
@@ -99,7 +99,7 @@ fn scene_joints_follow_the_pose() {
     // The scene is added after the character.
     let joints = scene(&mut app, entity, &def.rig);
     run(&mut app, 30);
-    let found = &app.world().get::<CharacterJoints>(entity).expect("it was found").0;
+    let found = &app.world().get::<CharacterJoints>(entity).expect("the joints were found").0;
     assert_eq!(found, &joints.iter().copied().map(Some).collect::<Vec<_>>());
     hit(&mut app, entity, Vec3::Z * -120.0);
     run(&mut app, 30);
@@ -110,10 +110,13 @@ fn scene_joints_follow_the_pose() {
     let mut model = Vec::new();
     local_to_model(&def.rig, character.pose(), &root, &mut model);
     for (index, &joint) in joints.iter().enumerate() {
-        let mut global = app.world().get::<Transform>(joint).expect("it has one").compute_affine();
+        let mut global =
+            app.world().get::<Transform>(joint).expect("the entity has this component").compute_affine();
         let mut of = app.world().get::<ChildOf>(joint).map(ChildOf::parent);
         while let Some(parent) = of {
-            global = app.world().get::<Transform>(parent).expect("it has one").compute_affine() * global;
+            global =
+                app.world().get::<Transform>(parent).expect("the entity has this component").compute_affine()
+                    * global;
             of = app.world().get::<ChildOf>(parent).map(ChildOf::parent);
         }
         let off = (Vec3::from(global.translation) - model[index].translation).length();
@@ -136,7 +139,8 @@ fn characters_teleport_report_and_despawn() {
     run(&mut app, 5);
     let limb = handle(&app, entity).bodies()[0];
     assert_eq!(physics(&app).entity(limb), Some(entity));
-    app.world_mut().get_mut::<Transform>(entity).expect("it has one").translation = Vec3::X * 5.0;
+    app.world_mut().get_mut::<Transform>(entity).expect("the entity has this component").translation =
+        Vec3::X * 5.0;
     run(&mut app, 1);
     let place = handle(&app, entity).world_from_character().translation;
     assert!((place - Vec3::X * 5.0).length() < 0.1, "{place}");

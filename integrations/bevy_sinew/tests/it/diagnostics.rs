@@ -13,7 +13,7 @@ fn step_time_is_measured() {
     }
     let value = |app: &App, path: &DiagnosticPath| {
         let store = app.world().resource::<DiagnosticsStore>();
-        store.get(path).and_then(|diagnostic| diagnostic.value()).expect("it was measured")
+        store.get(path).and_then(|diagnostic| diagnostic.value()).expect("the value was measured")
     };
     run(&mut app, 5);
     let counts = |app: &App| {

@@ -16,7 +16,7 @@ fn world_is_drawn_in_its_colours() {
     run(&mut app, 3);
     let handle = app.world().resource::<GizmoHandles>().handles()[&TypeId::of::<PhysicsGizmos>()].clone();
     let asset = app.world().resource::<Assets<GizmoAsset>>().get(&handle.expect("something was drawn"));
-    let colors = asset.expect("it is there").buffer().list_colors.clone();
+    let colors = asset.expect("the asset exists").buffer().list_colors.clone();
     let of = |kind: DrawKind| {
         let wanted = GizmoColors::default().of(kind).into();
         colors.iter().filter(|&&color| color == wanted).count()

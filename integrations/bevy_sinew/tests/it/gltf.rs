@@ -9,7 +9,7 @@ use std::path::Path;
 
 fn file() -> Vec<u8> {
     let mannequin = mannequin::mannequin();
-    formats::write_gltf(&mannequin.rig, &mannequin.clips).expect("it can be written")
+    formats::write_gltf(&mannequin.rig, &mannequin.clips).expect("the rig can be written as glTF")
 }
 
 #[test]
@@ -32,7 +32,7 @@ fn one_component_loads_a_character() {
         }
         std::thread::sleep(Duration::from_millis(5));
     }
-    let handle = app.world().get::<CharacterHandle>(entity).expect("it was loaded");
+    let handle = app.world().get::<CharacterHandle>(entity).expect("the entity has this component");
     assert!(handle.bodies().len() > 10);
     assert_eq!(handle.def().rig.skins.len(), 1);
 }
@@ -41,11 +41,11 @@ fn one_component_loads_a_character() {
 fn settings_name_clips() {
     let clips = mannequin::mannequin().clips;
     let named = CharacterSettings { walk: Some(clips[0].name.clone()), ..CharacterSettings::default() };
-    let read = read_character(&file(), "hero.glb", &named).expect("it is a character");
+    let read = read_character(&file(), "hero.glb", &named).expect("the file is a character");
     assert_eq!(read.def.motions().looped, Some(0));
     assert!(!read.def.motions().get_ups.is_empty());
     let wrong = CharacterSettings { idle: Some("no such".into()), ..CharacterSettings::default() };
-    let error = read_character(&file(), "hero.glb", &wrong).expect_err("it has no such clip");
+    let error = read_character(&file(), "hero.glb", &wrong).expect_err("the file lacks this clip");
     assert_eq!(error.to_string(), "no clip is called `no such`");
     assert!(read_character(b"no file", "no.glb", &CharacterSettings::default()).is_err());
 }

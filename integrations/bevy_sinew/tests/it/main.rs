@@ -74,7 +74,7 @@ fn ground(app: &mut App) -> Entity {
 }
 
 fn at(app: &App, entity: Entity) -> Vec3 {
-    app.world().get::<Transform>(entity).expect("it is there").translation
+    app.world().get::<Transform>(entity).expect("the entity has this component").translation
 }
 
 fn physics(app: &App) -> &Physics {
@@ -130,9 +130,10 @@ fn memory() -> Option<u64> {
 fn thousand_spawns_per_frame_do_not_leak() {
     const ALONE: &str = "SINEW_TEST_ALONE";
     if std::env::var_os(ALONE).is_none() {
-        let mut alone = std::process::Command::new(std::env::current_exe().expect("it runs"));
+        let mut alone =
+            std::process::Command::new(std::env::current_exe().expect("the path of the test is known"));
         alone.args(["--exact", "thousand_spawns_per_frame_do_not_leak", "--nocapture"]);
-        assert!(alone.env(ALONE, "1").status().expect("it starts").success());
+        assert!(alone.env(ALONE, "1").status().expect("the process starts").success());
         return;
     }
     let mut app = app();
@@ -172,10 +173,13 @@ fn children_follow_their_bodies() {
     // A child body of a body: both move independently.
     let below = app.world_mut().spawn((ball(Vec3::X * 2.0), ChildOf(child))).id();
     let global = |app: &App, entity: Entity| {
-        let mut affine = app.world().get::<Transform>(entity).expect("it has one").compute_affine();
+        let mut affine =
+            app.world().get::<Transform>(entity).expect("the entity has this component").compute_affine();
         let mut of = app.world().get::<ChildOf>(entity).map(ChildOf::parent);
         while let Some(parent) = of {
-            affine = app.world().get::<Transform>(parent).expect("it has one").compute_affine() * affine;
+            affine =
+                app.world().get::<Transform>(parent).expect("the entity has this component").compute_affine()
+                    * affine;
             of = app.world().get::<ChildOf>(parent).map(ChildOf::parent);
         }
         Vec3::from(affine.translation)
@@ -186,7 +190,7 @@ fn children_follow_their_bodies() {
     for (entity, start) in [child, below].into_iter().zip(start) {
         let way = start - global(&app, entity);
         assert!((way - Vec3::Y * fallen).length() < 0.1, "{way}");
-        let id = app.world().get::<BodyHandle>(entity).expect("it has one").id();
+        let id = app.world().get::<BodyHandle>(entity).expect("the entity has this component").id();
         let body = physics(&app).transform(id).translation;
         assert!((body - global(&app, entity)).length() < 1e-4);
     }
@@ -235,26 +239,27 @@ fn changes_of_components_reach_the_world() {
     let mut app = app();
     let ball = app.world_mut().spawn((ball(Vec3::Y * 5.0), Velocity::default())).id();
     run(&mut app, 2);
-    let id = app.world().get::<BodyHandle>(ball).expect("it has one").id();
+    let id = app.world().get::<BodyHandle>(ball).expect("the entity has this component").id();
     // Changes the position.
-    app.world_mut().get_mut::<Transform>(ball).expect("it has one").translation = Vec3::X * 7.0;
+    app.world_mut().get_mut::<Transform>(ball).expect("the entity has this component").translation =
+        Vec3::X * 7.0;
     run(&mut app, 1);
     assert!((at(&app, ball) - Vec3::X * 7.0).length() < 0.05, "{}", at(&app, ball));
     // Changes the velocity, which gravity then changes in the step.
-    app.world_mut().get_mut::<Velocity>(ball).expect("it has one").linear = Vec3::Z * 3.0;
+    app.world_mut().get_mut::<Velocity>(ball).expect("the entity has this component").linear = Vec3::Z * 3.0;
     run(&mut app, 1);
-    let velocity = app.world().get::<Velocity>(ball).expect("it has one").linear;
+    let velocity = app.world().get::<Velocity>(ball).expect("the entity has this component").linear;
     assert!((velocity - Vec3::new(0.0, -9.81 * DT, 3.0)).length() < 1e-3, "{velocity}");
     // Changes the kind.
-    *app.world_mut().get_mut::<RigidBody>(ball).expect("it has one") = RigidBody::Static;
+    *app.world_mut().get_mut::<RigidBody>(ball).expect("the entity has this component") = RigidBody::Static;
     let before = at(&app, ball);
     run(&mut app, 30);
     assert_eq!((physics(&app).kind(id), at(&app, ball)), (BodyKind::Static, before));
-    *app.world_mut().get_mut::<RigidBody>(ball).expect("it has one") = RigidBody::Dynamic;
+    *app.world_mut().get_mut::<RigidBody>(ball).expect("the entity has this component") = RigidBody::Dynamic;
     // Changes the shapes; the mass follows.
     let light = physics(&app).shape_ids(id).count();
     let shapes = vec![Shape::sphere(0.5).into(), Shape::cuboid(Vec3::splat(0.5)).into()];
-    *app.world_mut().get_mut::<Collider>(ball).expect("it has one") = Collider(shapes);
+    *app.world_mut().get_mut::<Collider>(ball).expect("the entity has this component") = Collider(shapes);
     run(&mut app, 1);
     assert_eq!((light, physics(&app).shape_ids(id).count()), (1, 2));
     let mass = 1000.0 * (1.0 + 4.0 / 3.0 * core::f32::consts::PI * 0.125);
@@ -277,7 +282,8 @@ fn joints_and_fields_are_added_changed_and_removed() {
     run(&mut app, 120);
     let sunk = 3.0 - at(&app, bob).y;
     assert!((sunk - math::trig::sin(0.5)).abs() < 0.02, "the slider is not at its limit: {sunk}");
-    app.world_mut().get_mut::<Joint>(hinge).expect("it has one").kind = JointKind::Hinge { limit: None };
+    app.world_mut().get_mut::<Joint>(hinge).expect("the entity has this component").kind =
+        JointKind::Hinge { limit: None };
     run(&mut app, 20);
     assert!(3.0 - at(&app, bob).y > 0.6, "the pendulum does not swing further");
     let up = UniformGravity { acceleration: Vec3::Y * 20.0 };

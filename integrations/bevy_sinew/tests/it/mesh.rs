@@ -27,7 +27,7 @@ fn drawn_meshes_become_colliders() {
     let floor = app.world_mut().spawn(floor).id();
     run(&mut app, 3);
     assert!(app.world().get::<Collider>(floor).expect("an empty one").0.is_empty());
-    app.world_mut().resource_mut::<Assets<Mesh>>().insert(&handle, square()).expect("it is stored");
+    app.world_mut().resource_mut::<Assets<Mesh>>().insert(&handle, square()).expect("the mesh can be stored");
     run(&mut app, 1);
     let ball = app.world_mut().spawn(ball(Vec3::new(1.7, 2.0, 1.7))).id();
     run(&mut app, 120);

@@ -17,7 +17,7 @@ fn movers_have_the_same_bits_as_in_the_library() {
     world.add_body(&BodyDef { user_data: floor.to_bits(), ..BodyDef::fixed(Shape::HalfSpace) });
     let place = Vec3::new(2.0, 0.25, 0.0);
     let crate_ = app.world_mut().spawn(ball(place)).id();
-    let shapes = app.world().get::<Collider>(crate_).expect("it has one").0.clone();
+    let shapes = app.world().get::<Collider>(crate_).expect("the entity has this component").0.clone();
     let def = BodyDef::dynamic(shapes[0].clone()).at(place);
     world.add_body(&BodyDef { user_data: crate_.to_bits(), ..def });
     let place = Vec3::new(0.0, 0.5, 0.0);
@@ -25,14 +25,17 @@ fn movers_have_the_same_bits_as_in_the_library() {
     let id = world.add_mover(&MoverDef { user_data: entity.to_bits(), ..MoverDef::at(place) });
     for step in 0..180 {
         if step == 90 {
-            app.world_mut().get_mut::<Walk>(entity).expect("it has one").jump = 4.0;
+            app.world_mut().get_mut::<Walk>(entity).expect("the entity has this component").jump = 4.0;
             world.mover_jump(id, 4.0);
         }
         world.set_mover_walk(id, Vec3::X * 2.0);
         app.update();
         world.step();
         if step == 90 {
-            assert!(!app.world().get::<MoverState>(entity).expect("it has one").grounded, "it jumps");
+            assert!(
+                !app.world().get::<MoverState>(entity).expect("the entity has this component").grounded,
+                "it jumps"
+            );
         }
         assert_eq!(physics(&app).hash(), world.hash(), "step {step}");
         assert_eq!(at(&app, entity), world.mover(id).position());
@@ -49,10 +52,11 @@ fn movers_teleport_crouch_and_despawn() {
     ground(&mut app);
     let entity = mover(&mut app, Vec3::ZERO, Vec3::ZERO);
     run(&mut app, 5);
-    app.world_mut().get_mut::<Transform>(entity).expect("it has one").translation = Vec3::X * 9.0;
-    app.world_mut().get_mut::<Mover>(entity).expect("it has one").0.height = 1.0;
+    app.world_mut().get_mut::<Transform>(entity).expect("the entity has this component").translation =
+        Vec3::X * 9.0;
+    app.world_mut().get_mut::<Mover>(entity).expect("the entity has this component").0.height = 1.0;
     run(&mut app, 2);
-    let id = app.world().get::<MoverHandle>(entity).expect("it has one").id();
+    let id = app.world().get::<MoverHandle>(entity).expect("the entity has this component").id();
     assert!((at(&app, entity) - Vec3::X * 9.0).length() < 0.01);
     assert_eq!(physics(&app).mover(id).def().height, 1.0);
     app.world_mut().entity_mut(entity).remove::<Mover>();
@@ -76,7 +80,7 @@ fn rope_attached_to_entities_is_removed_with_them() {
     run(&mut app, 60);
     let reach = (at(&app, load) - top).length();
     assert!((1.1..1.4).contains(&reach) && at(&app, load).y < 2.8, "it swings: {reach}");
-    let id = app.world().get::<ParticlesHandle>(rope).expect("it has one").id();
+    let id = app.world().get::<ParticlesHandle>(rope).expect("the entity has this component").id();
     assert_eq!(physics(&app).group_ids().collect::<Vec<_>>(), [id]);
     app.world_mut().despawn(hook);
     run(&mut app, 1);

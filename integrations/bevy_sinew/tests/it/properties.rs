@@ -5,11 +5,11 @@ use super::*;
 use bevy_sinew::physics::{LockedAxes, Motor, Sensing};
 
 fn body(app: &App, entity: Entity) -> physics::BodyId {
-    app.world().get::<BodyHandle>(entity).expect("it has one").id()
+    app.world().get::<BodyHandle>(entity).expect("the entity has this component").id()
 }
 
 fn set<T: Component<Mutability = bevy_ecs::component::Mutable>>(app: &mut App, entity: Entity, value: T) {
-    *app.world_mut().get_mut::<T>(entity).expect("it has one") = value;
+    *app.world_mut().get_mut::<T>(entity).expect("the entity has this component") = value;
 }
 
 #[test]
@@ -29,7 +29,7 @@ fn body_is_there_at_once() {
     run(&mut app, 1);
     assert_eq!(physics(&app).len(), 2);
     // Without the world, the body waits for the next step.
-    let physics = app.world_mut().remove_resource::<Physics>().expect("it is there");
+    let physics = app.world_mut().remove_resource::<Physics>().expect("the resource exists");
     let late = app.world_mut().spawn(super::ball(Vec3::Y * 20.0)).id();
     assert!(app.world().get::<BodyHandle>(late).is_none());
     app.world_mut().insert_resource(physics);
@@ -45,7 +45,7 @@ fn surfaces_follow_their_components() {
     let id = body(&app, entity);
     let shape = |app: &App| {
         let physics = physics(app);
-        physics.shape_def(physics.shape_ids(id).next().expect("it has one"))
+        physics.shape_def(physics.shape_ids(id).next().expect("the body has a shape"))
     };
     run(&mut app, 1);
     let found = shape(&app);
@@ -119,7 +119,8 @@ fn locked_axes_hold_until_they_are_removed() {
     run(&mut app, 60);
     assert!(up(&app) > 0.9999);
     // A body moved by the user is locked at its new position.
-    app.world_mut().get_mut::<Transform>(pawn).expect("it has one").translation = Vec3::new(5.0, 0.8, 0.0);
+    app.world_mut().get_mut::<Transform>(pawn).expect("the entity has this component").translation =
+        Vec3::new(5.0, 0.8, 0.0);
     run(&mut app, 30);
     assert!(up(&app) > 0.9999 && at(&app, pawn).x > 4.9);
     app.world_mut().entity_mut(pawn).remove::<Locked>();
@@ -145,7 +146,7 @@ fn joints_have_motors() {
     assert!((turns(&app) + 2.0).abs() < 0.05, "{}", turns(&app));
     app.world_mut().entity_mut(joint).remove::<JointMotor>();
     run(&mut app, 1);
-    let id = app.world().get::<JointHandle>(joint).expect("it has one").id();
+    let id = app.world().get::<JointHandle>(joint).expect("the entity has this component").id();
     assert!(physics(&app).joint(id).motor.is_none());
 }
 

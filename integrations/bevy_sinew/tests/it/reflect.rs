@@ -10,9 +10,11 @@ use serde::de::DeserializeSeed;
 
 fn round<T: FromReflect + PartialReflect>(app: &App, value: &T) -> T {
     let registry = app.world().resource::<AppTypeRegistry>().read();
-    let text = serde_json::to_string(&ReflectSerializer::new(value, &registry)).expect("it is written");
+    let text = serde_json::to_string(&ReflectSerializer::new(value, &registry))
+        .expect("the value can be serialised");
     let mut read = serde_json::Deserializer::from_str(&text);
-    let back = ReflectDeserializer::new(&registry).deserialize(&mut read).expect("it is read");
+    let back =
+        ReflectDeserializer::new(&registry).deserialize(&mut read).expect("the value can be deserialised");
     T::from_reflect(&*back).unwrap_or_else(|| panic!("{text} is one"))
 }
 

@@ -29,7 +29,8 @@ const OFF: f32 = 1e-4;
 fn app() -> App {
     let dir = Dir::default();
     let mannequin = mannequin::mannequin();
-    let bytes = formats::write_gltf(&mannequin.rig, &mannequin.clips).expect("it can be written");
+    let bytes =
+        formats::write_gltf(&mannequin.rig, &mannequin.clips).expect("the rig can be written as glTF");
     dir.insert_asset(Path::new("hero.glb"), bytes);
     let mut app = App::new();
     let reader = move || Box::new(MemoryAssetReader { root: dir.clone() }) as _;
@@ -74,7 +75,7 @@ impl Hero {
             assert!(!server.load_state(&file).is_failed(), "Bevy reads the file");
             std::thread::sleep(Duration::from_millis(5));
         }
-        let clip = app.world().resource::<Assets<Gltf>>().get(&file).expect("it is loaded");
+        let clip = app.world().resource::<Assets<Gltf>>().get(&file).expect("the file is loaded");
         let clip = clip.named_animations["walk"].clone();
         let (graph, walk) = AnimationGraph::from_clip(clip);
         let graph = app.world_mut().resource_mut::<Assets<AnimationGraph>>().add(graph);
@@ -91,7 +92,7 @@ impl Hero {
 
     fn animation(&mut self) -> &mut bevy::animation::ActiveAnimation {
         let player = self.app.world_mut().get_mut::<AnimationPlayer>(self.player);
-        player.expect("it is there").into_inner().play(self.walk)
+        player.expect("the scene has a player").into_inner().play(self.walk)
     }
 
     fn run(&mut self, updates: usize) {
@@ -99,7 +100,7 @@ impl Hero {
     }
 
     fn handle(&self) -> &CharacterHandle {
-        self.app.world().get(self.entity).expect("it has one")
+        self.app.world().get(self.entity).expect("the entity has this component")
     }
 
     /// Returns the height of the pelvis, metres.
@@ -111,16 +112,21 @@ impl Hero {
     fn joints_and_bodies(&mut self) -> Vec<(String, Pose, Pose)> {
         let world = self.app.world_mut();
         let mut skins = world.query::<&SkinnedMesh>();
-        let skinned = skins.iter(world).next().expect("it has a skin").joints.clone();
+        let skinned = skins.iter(world).next().expect("the scene has a skin").joints.clone();
         let handle = self.handle();
         let def = handle.def();
-        let bind = analyze(&def.rig).expect("it has a skin").bind_model;
-        let found = self.app.world().get::<CharacterJoints>(self.entity).expect("they were found");
+        let bind = analyze(&def.rig).expect("the rig has a skin").bind_model;
+        let found = self.app.world().get::<CharacterJoints>(self.entity).expect("the joints were found");
         let physics = self.app.world().resource::<Physics>();
         let carried = def.ragdoll.bodies.iter().zip(handle.bodies()).map(|(body, &id)| {
             let entity = found.0[body.joint].expect("each joint has an entity");
             assert!(skinned.contains(&entity), "{}: the mesh uses it", body.bone);
-            let drawn = self.app.world().get::<GlobalTransform>(entity).expect("it has one").affine();
+            let drawn = self
+                .app
+                .world()
+                .get::<GlobalTransform>(entity)
+                .expect("the entity has this component")
+                .affine();
             let (_, turn, at) = drawn.to_scale_rotation_translation();
             let drawn = Pose::new(at, Rotation::from_xyzw(turn.x, turn.y, turn.z, turn.w).normalize());
             let character_from_joint = (def.mapping().character_from_model() * bind[body.joint]).to_rigid();
@@ -132,7 +138,8 @@ impl Hero {
 
     fn go_limp(&mut self) {
         self.app.world_mut().resource_scope(|world, mut physics: Mut<Physics>| {
-            let mut handle = world.get_mut::<CharacterHandle>(self.entity).expect("it has one");
+            let mut handle =
+                world.get_mut::<CharacterHandle>(self.entity).expect("the entity has this component");
             handle.go_limp(&mut physics);
         });
     }
@@ -152,7 +159,7 @@ fn bevys_player_poses_the_character() {
     let mut hero = Hero::new();
     // The reference is our own sampling of the original clip, in its own joint order.
     let own = mannequin::character();
-    let walk = &own.motions().clips[own.motions().looped.expect("it walks")];
+    let walk = &own.motions().clips[own.motions().looped.expect("the character has a looped clip")];
     let mut most = 0.0f32;
     for part in [0.1, 0.35, 0.6, 0.85] {
         let time = part * walk.duration;

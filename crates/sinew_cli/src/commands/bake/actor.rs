@@ -12,7 +12,7 @@ use sinew::math::Vec3;
 use sinew::motions::{BuiltinError, set_motions_with_builtin};
 use sinew::ragdoll::{AfterSettling, CharacterDef, GroundContact, Locomotion, MotionSet, RagdollDef};
 
-/// Get-ups that the user wants.
+/// Get-ups that the user has chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GetUps {
     /// Clips of the files, else built-in motions.
@@ -34,7 +34,7 @@ pub enum GetsUpBy {
     Reversed(String),
     /// The built-in motions.
     Builtin,
-    /// Not wanted.
+    /// No source: the user chose no get-ups.
     Unwanted,
     /// No clips; contains the reason, appended to 'it does not get up: '.
     Nothing(String),

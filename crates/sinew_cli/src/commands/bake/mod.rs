@@ -119,7 +119,7 @@ pub struct Bake {
     /// a role without a body the nearest body is used
     #[arg(long = "hit", value_name = "BONE=IX,IY,IZ@T", allow_hyphen_values = true)]
     hits: Vec<HitArg>,
-    /// Show hits that are too weak to fell it as a flinch: the limb yields and recovers
+    /// Show hits that are too weak for a fall as a flinch: the limb yields and recovers
     #[arg(long)]
     flinch: bool,
     /// Go limp at this time, seconds; without any --hit the default is 0.5, and a character that stays upright is
@@ -171,7 +171,7 @@ fn key_error(text: &str) -> Result<f32, String> {
 }
 
 impl Bake {
-    /// Reads, simulates, draws, writes.
+    /// Runs the command: reads the files, simulates, draws the picture and writes the output.
     pub fn run(&self) -> Result<Report> {
         let key_bound = self.key_bound()?;
         self.check_outputs()?;
@@ -233,7 +233,7 @@ impl Bake {
         Ok(report)
     }
 
-    /// Returns the get-ups that the user wants.
+    /// Returns the get-ups that the user has chosen.
     fn get_ups(&self, file: &CharacterFile, motions: &Motions) -> Result<GetUps> {
         match self.get_up.as_deref() {
             Some("none") => Ok(GetUps::None),

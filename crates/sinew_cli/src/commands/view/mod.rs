@@ -84,7 +84,7 @@ pub struct View {
 }
 
 impl View {
-    /// Simulates, draws, writes.
+    /// Runs the command: simulates, draws the picture and writes the output.
     pub fn run(&self) -> Result<Report> {
         if self.outputs().next().is_none() {
             return self.open();

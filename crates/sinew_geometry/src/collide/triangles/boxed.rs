@@ -308,7 +308,7 @@ mod tests {
     /// An edge that is parallel to a side of the face above it is either wholly under the face or not at all; a
     /// crossing edge is clipped between the sides.
     #[test]
-    fn an_edge_is_under_a_face_between_its_sides() {
+    fn edge_between_the_sides_of_a_face_is_under_it() {
         let placed = PlacedBox::new(Vec3::new(2.0, 0.5, 1.0), &Transform::IDENTITY);
         let under = |from: Vec3, to: Vec3| {
             let points = under_face(&placed, &Segment { ends: [from, to] }, Vec3::Y, 0)?;

@@ -17,7 +17,7 @@ const FACES: f32 = 0.9;
 /// Cosine between two normals above which the contacts push to the same side.
 const SAME_SIDE: f32 = 0.5;
 
-/// Voided features of one surface: another triangle with the feature is touched elsewhere.
+/// Features of one surface that are void, because another triangle with the feature is touched elsewhere.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Claims {
     edges: Vec<(u32, u32)>,

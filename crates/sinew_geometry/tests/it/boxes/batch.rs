@@ -75,7 +75,7 @@ fn pairs_of(boxes: &[[Obb; 2]]) -> Pairs {
 }
 
 #[test]
-fn many_points_are_answered_like_one() {
+fn batched_points_give_the_results_of_single_points() {
     let mut random = Random::new(61);
     let (mut asked, mut held) = (0, 0);
     while asked < CASES {
@@ -106,7 +106,7 @@ fn many_points_are_answered_like_one() {
 }
 
 #[test]
-fn many_pairs_are_answered_like_one() {
+fn batched_pairs_give_the_results_of_single_pairs() {
     let mut random = Random::new(62);
     let boxes: Vec<[Obb; 2]> = (0..CASES + 3).map(|_| pair(&mut random)).collect();
     let pairs = pairs_of(&boxes);
@@ -146,7 +146,7 @@ fn separations_match_enumeration() {
 }
 
 #[test]
-fn face_axes_never_exceed_all_axes() {
+fn separation_of_face_axes_never_exceeds_that_of_all_axes() {
     let mut random = Random::new(64);
     let boxes: Vec<[Obb; 2]> = (0..CASES).map(|_| pair(&mut random)).collect();
     let pairs = pairs_of(&boxes);
@@ -219,7 +219,7 @@ fn nan_affects_only_its_own_lane() {
 }
 
 #[test]
-fn a_point_with_nan_is_nowhere() {
+fn point_with_nan_is_in_no_box() {
     let of = obb(&mut Random::new(66));
     for level in Level::available() {
         for k in 0..3 {
@@ -293,14 +293,14 @@ fn golden_soup_of_boxes() {
 
 #[test]
 #[should_panic = "one byte for every eight points"]
-fn answers_need_room() {
+fn short_result_slice_for_points_panics() {
     let points: Points = [Vec3::ZERO; 9].into_iter().collect();
     Obb::default().contains_points(&points, &mut [0]);
 }
 
 #[test]
 #[should_panic = "one distance for every point"]
-fn distances_need_room() {
+fn short_result_slice_for_distances_panics() {
     let points: Points = [Vec3::ZERO; 9].into_iter().collect();
     Obb::default().signed_distances(&points, &mut [0.0; 16]);
 }

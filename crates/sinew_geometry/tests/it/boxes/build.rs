@@ -8,7 +8,7 @@ use sinew_math::{Random, Rotation, Vec3};
 use std::panic::catch_unwind;
 
 #[test]
-fn nonfinite_sizes_and_places_panic() {
+fn nonfinite_sizes_and_positions_panic() {
     let turn = Rotation::IDENTITY;
     for bad in [-1.0, f32::NAN, f32::INFINITY] {
         let half = Vec3::new(1.0, bad, 1.0);
@@ -46,7 +46,7 @@ fn measures() {
 
 /// A rotated box has the mass properties of a shape of a body in the same frame.
 #[test]
-fn mass_properties_are_those_of_the_shape() {
+fn mass_properties_of_a_box_equal_those_of_its_shape() {
     let mut random = Random::new(71);
     for _ in 0..cases(10_000) {
         let obb = Obb::new(random.in_cube(), random.rotation(), half_extents(1.0, &mut random));

@@ -86,7 +86,7 @@ fn check(cuboid: &impl Cuboid, wide_box: &WideBox, of_center: f64, ray: &Ray, ca
 }
 
 #[test]
-fn rays_enter_where_bisection_does() {
+fn ray_hits_match_bisection() {
     let mut random = Random::new(61);
     let mut hits = 0;
     for case in 0..cases(100_000) {
@@ -106,7 +106,7 @@ fn rays_enter_where_bisection_does() {
 
 /// The half-line continues beyond the end of the segment.
 #[test]
-fn half_lines_have_no_end() {
+fn half_line_hits_a_box_beyond_the_segment() {
     let obb = Obb::new(Vec3::new(10.0, 0.0, 0.0), Rotation::IDENTITY, Vec3::ONE);
     let ray = Ray::between(Vec3::ZERO, Vec3::X);
     assert_eq!(obb.cast_ray(&ray), None);
@@ -120,7 +120,7 @@ fn half_lines_have_no_end() {
 
 /// Flat boxes stop rays too; a ray in the plane of one hits its edge.
 #[test]
-fn rays_meet_flat_boxes() {
+fn rays_hit_flat_boxes() {
     let sheet = Obb::new(Vec3::ZERO, Rotation::IDENTITY, Vec3::new(1.0, 0.0, 1.0));
     let down = Ray::between(Vec3::new(0.5, 2.0, 0.5), Vec3::new(0.5, -2.0, 0.5));
     let hit = sheet.cast_ray(&down).expect("through the sheet");

@@ -40,7 +40,7 @@ fn searched(points: &[Vec3], random: &mut Random) -> f32 {
 }
 
 #[test]
-fn corners_of_a_box_give_the_box_back() {
+fn box_is_recovered_from_its_corners() {
     let mut random = Random::new(81);
     for _ in 0..cases(10_000) {
         let obb = Obb::new(random.in_cube(), random.rotation(), half_extents(1.0, &mut random));
@@ -62,7 +62,7 @@ fn corners_of_a_box_give_the_box_back() {
 
 /// The smallest box around a regular tetrahedron is the cube whose face diagonals are its edges: three times its volume.
 #[test]
-fn a_tetrahedron_fits_its_cube() {
+fn regular_tetrahedron_gets_its_cube() {
     let mut random = Random::new(82);
     for _ in 0..cases(10_000) {
         let turn = random.rotation();
@@ -77,7 +77,7 @@ fn a_tetrahedron_fits_its_cube() {
 
 /// Prism on a regular triangle: the smallest rectangle around a triangle has a common side with it and twice its area.
 #[test]
-fn a_prism_stands_on_a_side() {
+fn prism_gets_a_box_on_one_of_its_sides() {
     let height = 0.5 * 3.0f32.sqrt();
     let turn = Rotation::from_scaled_axis(Vec3::new(0.4, -1.1, 0.3));
     let corner = |x: f32, y: f32, z: f32| turn * Vec3::new(x, y, z);
@@ -91,7 +91,7 @@ fn a_prism_stands_on_a_side() {
 
 /// Boxes around random clouds are never larger than the simpler boxes, and about as small as a random search finds.
 #[test]
-fn no_box_is_much_smaller() {
+fn random_rotations_find_no_much_smaller_box() {
     let mut random = Random::new(83);
     let (mut worst, mut sum) = (0.0f32, 0.0);
     let count = cases(10_000);
@@ -122,7 +122,7 @@ type Fit = fn(&[Vec3]) -> Option<Obb>;
 
 /// One point, points on a line, in a plane, all equal; no points; and NaN or infinity.
 #[test]
-fn degenerate_clouds_have_an_answer() {
+fn degenerate_clouds_get_a_box() {
     let (p, along) = (Vec3::new(3.0, -1.0, 2.0), Vec3::new(0.6, 0.0, 0.8));
     for fit in [Obb::from_points as Fit, Obb::from_points_pca] {
         assert_eq!(fit(&[]), None);
@@ -154,7 +154,7 @@ fn degenerate_clouds_have_an_answer() {
 }
 
 #[test]
-fn a_merged_box_holds_both() {
+fn merged_box_contains_both_boxes() {
     let mut random = Random::new(84);
     for _ in 0..cases(10_000) {
         let [a, b] =
@@ -178,7 +178,7 @@ fn a_merged_box_holds_both() {
 
 /// Bounds of a rotated box are `|R| h` about its centre, and corners touch every side.
 #[test]
-fn bounds_touch_corners() {
+fn bounds_touch_the_outermost_corners() {
     let mut random = Random::new(85);
     for _ in 0..cases(10_000) {
         let obb = Obb::new(place(&mut random), random.rotation(), half_extents(1.0, &mut random));

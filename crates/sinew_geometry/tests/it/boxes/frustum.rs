@@ -30,7 +30,7 @@ fn eye(frustum: &Frustum) -> WideBox {
 }
 
 #[test]
-fn boxes_are_culled_as_their_points_are_seen() {
+fn culled_boxes_have_no_visible_point() {
     let mut random = Random::new(91);
     let mut counts = [0; 3];
     let mut untold = 0;
@@ -77,7 +77,7 @@ fn boxes_are_culled_as_their_points_are_seen() {
 }
 
 #[test]
-fn balls_are_culled_by_their_depth() {
+fn visibility_of_balls_matches_their_depth() {
     let mut random = Random::new(92);
     for case in 0..cases(100_000) {
         let frustum = frustum(&mut random);
@@ -97,7 +97,7 @@ fn balls_are_culled_by_their_depth() {
 
 /// A ray passes through its position in the picture, and the position follows from the ray.
 #[test]
-fn rays_go_through_the_picture() {
+fn ray_of_a_pixel_passes_through_its_point() {
     let mut random = Random::new(93);
     for _ in 0..cases(10_000) {
         let frustum = frustum(&mut random);
@@ -116,7 +116,7 @@ fn rays_go_through_the_picture() {
 
 /// The first box along the segment is picked; among equals, the first in the list.
 #[test]
-fn the_nearest_box_is_picked() {
+fn nearest_box_is_picked() {
     let eye = Transform::from_translation(Vec3::new(0.0, 0.0, 10.0));
     let frustum = Frustum::new(eye, 1.0, 1.5, 0.1, 100.0);
     let at = |z: f32| Aabb::around(Vec3::new(0.0, 0.0, z), Vec3::splat(0.5));

@@ -211,7 +211,7 @@ fn capsules_match_a_search_along_their_cores() {
 fn touching_boxes_overlap() {
     let unit = Obb::new(Vec3::ZERO, Rotation::IDENTITY, Vec3::ONE);
     let beside = Obb::new(Vec3::new(2.0, 0.0, 0.0), Rotation::IDENTITY, Vec3::ONE);
-    let way = unit.penetration(&beside).expect("they touch");
+    let way = unit.penetration(&beside).expect("touching boxes overlap");
     assert_eq!((way.depth, way.direction), (0.0, Vec3::X));
     let corner = Aabb::new(Vec3::ONE, Vec3::splat(3.0));
     assert!(unit.overlaps(&corner) && corner.overlaps(&unit));
@@ -219,7 +219,7 @@ fn touching_boxes_overlap() {
     assert!(unit.overlaps(&Sphere::new(Vec3::new(0.0, 3.0, 0.0), 2.0)));
     assert!(!unit.overlaps(&Sphere::new(Vec3::new(0.0, 3.0f32.next_up(), 0.0), 2.0)));
     let lying = Capsule::new([Vec3::new(-5.0, 1.5, 0.0), Vec3::new(5.0, 1.5, 0.0)], 0.5);
-    let way = unit.penetration(&lying).expect("they touch");
+    let way = unit.penetration(&lying).expect("touching boxes overlap");
     assert_eq!((way.depth, way.direction), (0.0, Vec3::Y));
     // Edge on edge, at right angles, with each box resting on its edge.
     let eighth = Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_4);
@@ -228,7 +228,7 @@ fn touching_boxes_overlap() {
     let (low, high) = (Obb::new(Vec3::ZERO, eighth, Vec3::ONE), |y| Obb::new(Vec3::Y * y, above, Vec3::ONE));
     assert!(low.overlaps(&high(2.0 * height)));
     assert!(!low.overlaps(&high(2.0 * height + 2e-5)));
-    let way = low.penetration(&high(2.0 * height - 0.1)).expect("they overlap");
+    let way = low.penetration(&high(2.0 * height - 0.1)).expect("the boxes overlap");
     assert!((way.depth - 0.1).abs() < 2e-6 && (way.direction - Vec3::Y).length() < 1e-5, "{way:?}");
 }
 
@@ -251,7 +251,7 @@ fn flat_boxes_overlap_exactly() {
 
 /// Moving both boxes changes neither the overlap test nor the depth.
 #[test]
-fn overlaps_move_with_the_boxes() {
+fn overlap_is_invariant_under_common_motion() {
     let mut random = Random::new(56);
     let mut compared = 0;
     for _ in 0..cases(100_000) {

@@ -64,7 +64,7 @@ fn check(cuboid: &impl Cuboid, wide_box: &WideBox, point: Vec3, case: u32) {
 }
 
 #[test]
-fn points_match_the_nearest_of_six_faces() {
+fn point_depth_matches_the_nearest_of_six_faces() {
     let mut random = Random::new(41);
     for case in 0..cases(100_000) {
         let obb = obb(&mut random);
@@ -76,7 +76,7 @@ fn points_match_the_nearest_of_six_faces() {
 
 /// With exact coordinates a point on the surface is inside the box, and the next representable one is outside.
 #[test]
-fn the_surface_belongs_to_the_box() {
+fn points_on_the_surface_are_inside() {
     let aabb = Aabb::new(Vec3::new(-1.0, 2.0, 4.0), Vec3::new(1.0, 4.0, 4.0));
     let obb = Obb::new(Vec3::new(0.0, 3.0, 4.0), Rotation::IDENTITY, Vec3::new(1.0, 1.0, 0.0));
     for on in [Vec3::new(1.0, 2.0, 4.0), Vec3::new(-1.0, 4.0, 4.0), Vec3::new(0.3, 3.0, 4.0)] {
@@ -93,7 +93,7 @@ fn the_surface_belongs_to_the_box() {
 
 /// Box rotated by 45°: depth and direction by hand.
 #[test]
-fn the_way_out_goes_through_the_nearest_face() {
+fn exit_direction_is_through_the_nearest_face() {
     let turned = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_4);
     let obb = Obb::new(Vec3::new(5.0, 0.0, 0.0), turned, Vec3::new(2.0, 0.5, 1.0));
     let along = turned * Vec3::X;
@@ -108,7 +108,7 @@ fn the_way_out_goes_through_the_nearest_face() {
 
 /// Moving the point and the box does not change the results.
 #[test]
-fn answers_move_with_the_box() {
+fn point_results_move_with_the_box() {
     let mut random = Random::new(43);
     for case in 0..cases(100_000) {
         let scale = [0.1, 1.0, 10.0][random.index(3)];

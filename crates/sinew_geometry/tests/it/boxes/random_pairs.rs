@@ -6,7 +6,7 @@ use crate::wide::{add, dot, length, wide};
 use sinew_geometry::Obb;
 use sinew_math::{Random, Rotation, Vec3};
 
-/// Returns a rotation: a third are the identity, a third nearly.
+/// Returns a random rotation: in a third of the cases the identity, in another third nearly the identity.
 pub fn rotation(random: &mut Random) -> Rotation {
     match random.index(3) {
         0 => Rotation::IDENTITY,

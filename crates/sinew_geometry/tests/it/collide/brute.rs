@@ -136,7 +136,7 @@ fn judge(seed: u64, mut of: impl FnMut(Kind, Kind, &Placed, &Placed, &mut Random
 /// The normal is the best direction, the separation is the gap along it, and there is a manifold exactly if the shapes
 /// are within the margin.
 #[test]
-fn matches_the_support_functions() {
+fn separation_matches_the_support_functions() {
     judge(1, |ka, kb, a, b, random| {
         let size = f64::from(a.size() + b.size());
         let margin = 0.05 * a.size().max(b.size());
@@ -167,7 +167,7 @@ fn matches_the_support_functions() {
 /// A point is half-way between the surfaces along the normal, on both shapes, except for nearly parallel edges, ends of
 /// tilted capsules, and deep overlaps without face or edge contact.
 #[test]
-fn points_lie_between_the_surfaces() {
+fn contact_points_lie_between_the_surfaces() {
     let mut tallies: BTreeMap<String, Tally> = BTreeMap::new();
     judge(2, |ka, kb, a, b, _| {
         let tally = tallies.entry(format!("{ka:?} {kb:?}")).or_default();
@@ -216,7 +216,7 @@ fn is_tie(kind: Kind, a: &Placed, b: &Placed, ab: &Manifold, ba: &Manifold) -> b
 /// Swapped shapes give the opposite normal, the same points, and features with exchanged halves. Rarely, two shapes of
 /// one kind may give another result that is equally good.
 #[test]
-fn the_order_of_the_shapes_does_not_matter() {
+fn exchanged_shapes_give_the_mirrored_contact() {
     let mut ties: BTreeMap<(Kind, Kind), u32> = BTreeMap::new();
     judge(3, |ka, kb, a, b, _| {
         let size = a.size().max(b.size());
@@ -255,7 +255,7 @@ fn is_exchanged(ka: Kind, kb: Kind, size: f32, ab: &Manifold, ba: &Manifold) -> 
 
 /// Moving both shapes together moves the contact with them.
 #[test]
-fn contacts_turn_with_the_shapes() {
+fn contacts_rotate_with_the_shapes() {
     let mut other = 0;
     judge(6, |ka, kb, a, b, random| {
         let size = a.size().max(b.size());

@@ -8,7 +8,7 @@ use sinew_geometry::convex::{cast_shape, gap};
 use sinew_math::{Random, Transform, Vec3};
 
 #[test]
-fn casts_stop_where_the_gap_closes() {
+fn casts_stop_where_the_gap_becomes_zero() {
     let mut random = Random::new(21);
     for (ka, kb) in all_pairs() {
         let (mut hits, mut starts) = (0, 0);
@@ -27,7 +27,7 @@ fn casts_stop_where_the_gap_closes() {
             let close = 2e-5 * size + 1e-6 * (a.frame.translation.length() + b.frame.translation.length());
             let before = hit.map_or(1.0, |hit| hit.fraction);
             if along(0.0).distance <= 0.0 {
-                let hit = hit.expect("they overlap at the start");
+                let hit = hit.expect("the shapes overlap at the start");
                 assert_eq!(hit.fraction, 0.0, "{}", context());
                 assert_eq!(hit.normal, -along(0.0).normal, "{}", context());
                 starts += 1;
@@ -54,13 +54,14 @@ fn casts_stop_where_the_gap_closes() {
 }
 
 #[test]
-fn a_falling_barrel_lands_on_its_rim() {
+fn tilted_cylinder_lands_on_its_rim() {
     let barrel = Shape::Cylinder { half_height: 0.5, radius: 0.3 };
     let lean = sinew_math::Rotation::from_axis_angle(Vec3::Z, 0.2);
     let start = Transform::new(Vec3::new(0.0, 2.0, 0.0), lean);
     let motion = Vec3::new(0.0, -4.0, 0.0);
     let ground = Transform::IDENTITY;
-    let hit = cast_shape(&barrel, &start, motion, &Shape::HalfSpace, &ground).expect("it falls");
+    let hit =
+        cast_shape(&barrel, &start, motion, &Shape::HalfSpace, &ground).expect("the barrel hits the ground");
     let (sin, cos) = (sinew_math::trig::sin(0.2), sinew_math::trig::cos(0.2));
     let height = 0.5 * cos + 0.3 * sin;
     assert!((hit.fraction - (2.0 - height) / 4.0).abs() < 1e-5, "{hit:?}");

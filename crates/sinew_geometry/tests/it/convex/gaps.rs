@@ -100,7 +100,7 @@ fn check(a: &Placed, b: &Placed, found: &Gap, random: &mut Random) -> Result<f64
 }
 
 #[test]
-fn gaps_are_proved_by_points_and_planes() {
+fn gaps_are_bounded_by_points_and_planes() {
     let mut random = Random::new(11);
     for (ka, kb) in all_pairs() {
         let (mut worst, mut deep) = (0.0f64, 0);
@@ -173,7 +173,7 @@ fn three_gap_methods_agree_for_boxes() {
 }
 
 #[test]
-fn nan_has_no_gap() {
+fn gap_of_nan_is_none() {
     for kind in FINITE {
         let shape = random_shape(kind, 1.0, &mut Random::new(1));
         let nowhere = Transform::from_translation(Vec3::new(f32::NAN, 0.0, 0.0));

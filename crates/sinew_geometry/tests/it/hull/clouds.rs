@@ -68,7 +68,7 @@ fn check_solid(hull: &Hull, size: f32, context: &str) {
 }
 
 #[test]
-fn random_clouds_have_hulls_that_hold_them() {
+fn hulls_of_random_clouds_contain_their_points() {
     let mut random = Random::new(11);
     let (mut made, mut refused) = (0, 0);
     for case in 0..cases(10_000).max(2_000) {
@@ -107,7 +107,7 @@ fn random_clouds_have_hulls_that_hold_them() {
 }
 
 #[test]
-fn the_order_of_the_points_does_not_matter() {
+fn point_order_does_not_change_the_hull() {
     let mut random = Random::new(12);
     for case in 0..200 {
         let mut points = cloud(case % 8, &mut random);
@@ -123,7 +123,7 @@ fn the_order_of_the_points_does_not_matter() {
 
 /// A cube from all points of a grid on and in it: 8 corners and 6 faces remain.
 #[test]
-fn a_grid_is_a_cube() {
+fn grid_of_points_gives_a_cube() {
     let line = (0..9).map(|k| k as f32 * 0.125 - 0.5);
     let points: Vec<Vec3> = line
         .clone()
@@ -136,7 +136,7 @@ fn a_grid_is_a_cube() {
 
 /// A hull that would exceed the limit of faces is simplified, and points outside it have the returned distance.
 #[test]
-fn a_round_cloud_is_simplified() {
+fn hull_of_a_round_cloud_is_simplified() {
     let mut random = Random::new(13);
     let points: Vec<Vec3> = (0..5_000).map(|_| random.direction()).collect();
     let hull = Hull::new(&points).expect("a solid");
@@ -147,7 +147,7 @@ fn a_round_cloud_is_simplified() {
 }
 
 #[test]
-fn degenerate_clouds_are_errors() {
+fn degenerate_clouds_are_rejected() {
     let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
     let new = |points: &[Vec3]| Hull::new(points).expect_err("no solid");
     assert_eq!(new(&[]), HullError::TooFewPoints);

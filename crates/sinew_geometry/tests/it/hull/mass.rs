@@ -38,7 +38,7 @@ fn closed_forms() {
 }
 
 #[test]
-fn voxels_agree() {
+fn mass_properties_match_voxels() {
     const CELLS: i32 = 60;
     let mut random = Random::new(14);
     for _ in 0..6 {
@@ -66,7 +66,7 @@ fn voxels_agree() {
 
 /// Marches along rays in small steps: the first step inside is the hit, and distances decrease along the ray.
 #[test]
-fn rays_and_distances_agree() {
+fn hull_rays_match_marching_by_distance() {
     let mut random = Random::new(15);
     let mut hits = 0;
     for _ in 0..300 {
@@ -107,7 +107,7 @@ fn rays_and_distances_agree() {
 
 /// Water, bounds and regions treat a hull of a box's corners like the box.
 #[test]
-fn a_hull_of_box_corners_answers_as_the_box() {
+fn hull_of_box_corners_gives_the_results_of_the_box() {
     let mut random = Random::new(22);
     let half = Vec3::new(0.3, 1.0, 0.7);
     let shapes = [box_hull(half), Shape::Box { half_extents: half }];

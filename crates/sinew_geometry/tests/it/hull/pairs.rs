@@ -197,7 +197,7 @@ fn nearest(manifold: &Manifold) -> f64 {
 }
 
 #[test]
-fn equals_brute_force() {
+fn hull_contacts_match_brute_force() {
     let mut random = Random::new(18);
     let (mut apart, mut deep, mut missing) = (0, 0, 0);
     for number in 0..cases(100_000) {
@@ -242,7 +242,7 @@ fn equals_brute_force() {
 }
 
 #[test]
-fn neither_order_nor_turning_matters() {
+fn hull_contacts_are_invariant_under_exchange_and_rotation() {
     let mut random = Random::new(19);
     let mut other = 0;
     let all = cases(100_000);
@@ -272,7 +272,7 @@ fn neither_order_nor_turning_matters() {
 
 /// A hull of the eight corners of a box has the contacts of the box.
 #[test]
-fn a_hull_of_box_corners_has_box_contacts() {
+fn hull_of_box_corners_has_the_contacts_of_the_box() {
     let mut random = Random::new(20);
     let mut met = 0;
     for number in 0..cases(100_000) {
