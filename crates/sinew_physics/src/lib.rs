@@ -11,8 +11,8 @@
 //! assert!((world.transform(ball).translation.y - 0.5).abs() < 0.001, "it lies on the ground");
 //! ```
 //!
-//! All calls are methods of [`World`]: bodies from a [`BodyDef`], joints from a [`JointDef`], [queries](World::query), [events](World::events),
-//! [snapshots](World::save).
+//! All calls are methods of [`World`]: bodies from a [`BodyDef`], joints from a [`JointDef`],
+//! [queries](World::query), [events](World::events), [snapshots](World::save).
 //!
 //! SI units, radians, +Y up, right-handed, `f32`. Shapes are those of [`sinew_geometry`]. Read `step/mod.rs` first: it
 //! runs the stages of a step in order.

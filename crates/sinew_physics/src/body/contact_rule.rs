@@ -86,8 +86,8 @@ impl OneWay {
     }
 }
 
-/// Limits on the effect of a kinematic body on dynamic ones. Beyond the limits the two bodies pass through each other until they are
-/// separate. On a dynamic body this rule has no effect.
+/// Limits on the effect of a kinematic body on dynamic ones. Beyond the limits the two bodies pass through each other
+/// until they are separate. On a dynamic body this rule has no effect.
 ///
 /// A hand stops a flying object and throws it back, kicks a ball, and passes through a crate of 50 kg.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -274,7 +274,7 @@ mod tests {
     use crate::body::shape::Shape;
 
     #[test]
-    fn short_ways_say_what_fields_say() {
+    fn shorthand_constructors_equal_struct_fields() {
         let (ball, plank) = (Shape::Sphere { radius: 0.5 }, Shape::Box { half_extents: Vec3::ONE });
         let rotation = Rotation::from_axis_angle(Vec3::Y, 1.0);
         let heavy = ShapeDef { density: 7800.0, ..ShapeDef::new(plank.clone()) };

@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn no_matter_which_side_comes_first_and_what_rests_holds_no_less() {
+    fn combined_material_is_symmetric_and_static_friction_is_not_below_sliding() {
         let mut random = Random::new(5);
         for _ in 0..100_000 {
             let (a, b) = (random_material(&mut random), random_material(&mut random));
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn the_later_rule_wins_and_silence_leaves_it_to_the_other_side() {
+    fn later_combine_rule_wins_and_none_defers_to_the_other_side() {
         let rules = |friction| CombineRules { friction, ..CombineRules::default() };
         for (i, &a) in RULES.iter().enumerate() {
             for (j, &b) in RULES.iter().enumerate() {
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_make_no_sense_are_named() {
+    fn invalid_material_numbers_are_named_in_the_error() {
         for wrong in [
             Material { friction: f32::NAN, ..Material::DEFAULT },
             Material { restitution: -0.1, ..Material::DEFAULT },

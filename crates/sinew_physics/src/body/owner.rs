@@ -57,7 +57,7 @@ impl Owners {
     }
 }
 
-/// Owners in a snapshot: each is written at its first use, so that a snapshot without owners is as short as before.
+/// Owners in a snapshot: each is written at its first use, so that a snapshot without owners needs no extra bytes.
 #[derive(Debug, Default)]
 pub(crate) struct OwnersInOrder {
     /// Numbers in [`Owners`], in the order of first use in the snapshot.

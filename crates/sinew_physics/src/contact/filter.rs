@@ -69,8 +69,8 @@ fn side(bodies: &Arena<Body>, index: u32, shape: u32) -> PairSide {
     }
 }
 
-/// True if the kinds of two shapes allow a contact. Contacts require a dynamic body. A sensor detects anything that
-/// moves to it or that it moves to; two sensors do not detect each other.
+/// True if the kinds of two shapes allow a contact. Contacts require a dynamic body. A sensor detects any shape if one
+/// of the two moves; two sensors do not detect each other.
 pub(crate) fn kinds_meet([a, b]: [(BodyKind, Sensing); 2]) -> bool {
     let either = |kind: BodyKind| a.0 == kind || b.0 == kind;
     match (a.1, b.1) {

@@ -211,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_axis_is_packed_without_loss() {
+    fn packed_axis_unpacks_to_the_same_axis() {
         let most = PackedAxis::MOST;
         let axes = [
             None,

@@ -1,5 +1,5 @@
-//! Part of `collide`: pairs with a mesh or a height field have several contact regions. Each manifold is a separate
-//! contact, a part of the pair.
+//! Contacts of pairs with a mesh or a height field, which may have several contact regions. Each manifold is a separate
+//! contact, a part of the pair. Belongs to the stage `collide`.
 
 use crate::collide::{Ground, MAX_PARTS, Manifold, Motion, Patch, Scratch, collide_pair};
 use crate::contact::proxies::Owner;

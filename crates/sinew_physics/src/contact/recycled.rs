@@ -303,7 +303,7 @@ mod tests {
     /// Boxes stacked and slightly moved: recycled points have the same separations as recomputed points. Positions are
     /// not compared: nearly parallel edges cross at other points after a small motion.
     #[test]
-    fn kept_points_are_as_far_apart_as_new_ones() {
+    fn recycled_points_have_the_separations_of_recomputed_points() {
         let mut random = Random::new(14);
         let key = ContactKey { a: 0, b: 1, shape_a: 0, shape_b: 0, part: 0 };
         let (mut kept, mut dropped, mut same) = (0, 0, 0);

@@ -1,4 +1,4 @@
-//! In `collide`: contacts at internal edges, where another fixed shape continues the surface.
+//! Contacts at internal edges, where another fixed shape continues the surface. Part of the stage `collide`.
 
 use crate::arena::Arena;
 use crate::body::Body;

@@ -39,7 +39,8 @@ pub(crate) const BOUNDS_ROOM_LED: f32 = 0.3;
 
 /// Number of steps of motion at the current velocity that the fat bounds of small kinematic bodies include.
 ///
-/// Larger: bounds are longer and make more candidate pairs. Smaller: more leaves move. Shown as [`BOUNDS_ROOM_LED`].
+/// Larger: bounds are longer and make more candidate pairs. Smaller: more leaves move. Shown by the same count as
+/// [`BOUNDS_ROOM_LED`].
 pub(crate) const BOUNDS_STEPS_LED: f32 = 12.0;
 
 /// Number of steps of motion at the current velocity that fat bounds include.
@@ -51,13 +52,13 @@ pub(crate) const BOUNDS_STEPS: f32 = 3.0;
 /// Steps of motion included in the fat bounds of shapes that collide with nothing, a number.
 ///
 /// Only rays and other queries use these bounds. Larger: rays test more boxes. Smaller: leaves of flying bodies move more
-/// often. Shown as [`BOUNDS_STEPS`].
+/// often. Shown by the same bench as [`BOUNDS_STEPS`].
 pub(crate) const BOUNDS_STEPS_ALONE: f32 = 12.0;
 
 /// Factor on the margin above which oversized fat bounds are shrunk, a ratio.
 ///
 /// Larger: bodies at rest keep the long bounds of their flight, with many candidate pairs. Smaller: the bounds of
-/// slowing bodies are rebuilt repeatedly. Shown as [`BOUNDS_STEPS`].
+/// slowing bodies are rebuilt repeatedly. Shown by the same bench as [`BOUNDS_STEPS`].
 pub(crate) const BOUNDS_EXCESS: f32 = 3.0;
 
 /// Error by which a computed gap may be too large, metres.

@@ -51,7 +51,7 @@ impl Explosion {
     /// Checks that the numbers of the explosion are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// The problem, in lower case.
+    /// Returns a phrase that names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         let valid = self.center.is_finite() && positive(self.radius) && not_negative(self.impulse);
         if valid {

@@ -59,8 +59,8 @@ pub struct SixDof {
 }
 
 impl SixDof {
-    /// All directions free, for motors and springs that pull. To a static or kinematic body it is a pin: as stable as
-    /// any spring, however many pins a tree of bodies has, and it closes no loop.
+    /// All directions free: the joint acts only by its motor, spring and friction. On a static or kinematic body it is
+    /// a pin, which stays stable for any number of pins on a tree of bodies and closes no loop.
     pub const FREE: Self = Self {
         linear: [AxisMotion::Free; 3],
         twist: AxisMotion::Free,
@@ -77,7 +77,7 @@ pub enum AxisMotion {
     Locked,
     /// Unlimited.
     Free,
-    /// Free within a range, metres or radians. `Locked` is better than a range without width.
+    /// Free within a range, metres or radians. For a range without width, use `Locked`.
     Limited(Range),
 }
 

@@ -73,7 +73,7 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// Row of the rate of the anchors' distance along a direction fixed in the world.
+    /// Row for the rate of the anchors' distance along a direction fixed in the world.
     fn along(direction: Vec3, pose: &JointPose) -> Self {
         Self {
             a: join(-direction, -pose.arm_a.cross(direction)),
@@ -81,7 +81,7 @@ impl Row {
         }
     }
 
-    /// Row of the rate of the anchors' distance along a direction that rotates with A.
+    /// Row for the rate of the anchors' distance along a direction that rotates with A.
     fn along_turning(direction: Vec3, pose: &JointPose) -> Self {
         Self {
             a: join(-direction, -(pose.arm_a + pose.gap).cross(direction)),
@@ -89,7 +89,7 @@ impl Row {
         }
     }
 
-    /// Row of the rate of rotation of B relative to A about an axis.
+    /// Row for the rate of rotation of B relative to A about an axis.
     fn about(axis: Vec3) -> Self {
         Self { a: join(Vec3::ZERO, -axis), b: join(Vec3::ZERO, axis) }
     }
@@ -184,8 +184,8 @@ impl JointRows {
         if self.turns(row) { join(Vec3::ZERO, axis) } else { join(axis, arm.cross(axis)) }
     }
 
-    /// Returns the total impulse of the rows, linear and angular, about the centre of A and about that of B. Subtract
-    /// the first from A, add the second to B.
+    /// Returns the total impulse of the rows, linear and angular: about the centre of A, and about that of B. Subtract
+    /// the first from A's momentum, and add the second to B's.
     pub fn impulse(&self, of_rows: &Vec6) -> [Vec6; 2] {
         let [x, y, z, ..] = *of_rows;
         let (first, mut force) =
@@ -368,7 +368,7 @@ pub(crate) struct Stop {
 }
 
 impl Stop {
-    /// Row of the rate of the slack.
+    /// Row for the rate of the slack.
     pub fn row(&self, kind: &JointKind, pose: &JointPose) -> Row {
         let axis = pose.rotation_a * self.axis;
         if turns(self.limit) {

@@ -30,7 +30,7 @@ pub struct MoverDef {
     pub slope_limit: f32,
     /// Largest acceleration on the ground, m/s². Default 60.
     pub ground_acceleration: f32,
-    /// Largest acceleration in the air, m/s²; without a wanted velocity, a flying mover keeps its velocity. Default 10.
+    /// Largest acceleration in the air, m/s². A flying mover without a wanted velocity keeps its velocity. Default 10.
     pub air_acceleration: f32,
     /// Multiple of the world's gravity. Default 1.
     pub gravity_scale: f32,
@@ -38,8 +38,8 @@ pub struct MoverDef {
     pub skin: f32,
     /// Filter of the shapes and other movers that the mover collides with. Default all.
     pub filter: Filter,
-    /// Momentum up to which flying bodies (faster than 2 m/s) pass through the mover, N·s: the limbs of a character
-    /// collide with them instead. Bodies jointed to a static or kinematic body, such as a door, do not fly. Default 0.
+    /// Momentum up to which flying bodies (faster than 2 m/s) pass through the mover, N·s; a character's limbs collide
+    /// with them instead. Bodies jointed to a static or kinematic body, such as a door, do not fly. Default 0.
     pub lets_pass: f32,
     /// Number for the user's own purposes. Default 0.
     pub user_data: u64,
@@ -76,7 +76,7 @@ impl MoverDef {
     /// Checks that the numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// The problem, in lower case.
+    /// Returns a phrase that names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         // The comparison is false for NaN.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;

@@ -1,7 +1,7 @@
 //! Kinematic character movers: capsules that walk, climb steps, ride, push and fall, without a body of their own.
 //!
 //! The stage `movers` is the last of a step: bodies have their new poses, and the movers move among them in order of
-//! their ids. `docs/mover.md` has the order of a move and the settings by symptom.
+//! their ids. `docs/mover.md` lists the order of a move, and the settings by symptom.
 
 mod crowd;
 mod def;

@@ -22,8 +22,8 @@ pub(super) struct Planes {
 /// Violation of a plane that counts as rounding, as a share of the motion's length, and in metres.
 const FORGIVEN: f32 = 1e-5;
 const FORGIVEN_LENGTH: f32 = 1e-7;
-/// Largest cross product of two planes' normals at which the planes count as parallel; three planes whose determinant
-/// is below the square have no corner.
+/// Largest cross product of two planes' normals at which the planes count as parallel. Three planes whose determinant
+/// is below the square of this number have no corner.
 const PARALLEL: f32 = 1e-3;
 
 impl Planes {

@@ -67,7 +67,7 @@ impl Touches {
     }
 }
 
-/// Share of a motion by which the motion may approach the surface it slides along.
+/// Largest approach to a surface that still counts as sliding along it, as a share of the motion.
 const ALONG: f32 = 1e-4;
 const MOST_STEPS: usize = 48;
 const MOST_SLIDES: usize = 8;

@@ -161,7 +161,7 @@ impl<'a> Move<'a> {
         }
         center = match mover.ground {
             Some(_) => self.walk(mover, center),
-            // In the step of a jump, the ground has already moved the mover.
+            // In the step in which the mover jumps, its ground has already carried it.
             None => self.fly(mover, center, (gravity, carried, pushed)),
         };
         mover.put(center);

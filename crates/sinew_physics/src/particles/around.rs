@@ -51,7 +51,7 @@ mod tests {
     use sinew_math::dispatch::{self, Level};
 
     #[test]
-    fn bounds_are_those_of_each_point_in_turn() {
+    fn simd_bounds_equal_bounds_of_each_point_in_turn() {
         let mut random = Random::new(1);
         for level in Level::available() {
             for count in [0, 1, 8, 13, 100] {

@@ -119,7 +119,7 @@ impl<const K: usize> Run<K> {
         if self.is_along() { K as u32 } else { 1 }
     }
 
-    /// True if `next`, a run of a single row, continues this run.
+    /// True if the single row `next` continues this run.
     fn goes_on(&self, next: &Self) -> bool {
         let follows = (0..K).all(|k| next.first[k] == self.first[k] + self.step() * self.count);
         let meets = |k: usize| (0..k).any(|j| self.first[k].abs_diff(self.first[j]) <= self.count);
@@ -281,7 +281,7 @@ impl Batches {
     }
 }
 
-/// Puts aligned and turned rows in blocks by the distance of their particles, then the other rows.
+/// Puts aligned and turned rows in blocks by the index distance of their particles, then the other rows.
 fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) -> Rows<K> {
     let mut keyed: Vec<([i64; K], u32, usize, usize, Row<K>)> = Vec::new();
     let mut others = Vec::new();

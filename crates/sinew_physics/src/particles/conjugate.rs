@@ -32,8 +32,8 @@ impl Conjugate {
         }
     }
 
-    /// Starts from the current solution: stores the hub velocities; the residual becomes the transmitted momentum minus
-    /// the one in it before.
+    /// Starts from the current solution: stores the hub velocities, and sets the residual to the transmitted momentum
+    /// minus the previous residual.
     pub fn start<'a>(&mut self, hubs: impl Iterator<Item = &'a Vec6>) {
         for (residual, passed) in self.residual.iter_mut().zip(&self.passed) {
             *residual = *passed - *residual;

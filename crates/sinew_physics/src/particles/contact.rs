@@ -1,9 +1,9 @@
 //! Contacts of particles, present or expected within the iteration, as part of the spring solve.
 //!
 //! If the spring solve ignored contacts, a particle on an edge would fall freely, and a rope bent over the edge would
-//! have the wrong tension. A rope end that hits the floor would be moved back against its springs, which would gain
-//! energy from nothing. Each particle on a surface sticks to it or slides on it: its velocity, or one component of it,
-//! is prescribed in the linear system, which remains exact and cannot diverge. The impulses of the solution decide
+//! have the wrong tension. A rope end that hits the floor would be moved back against its springs, which would create
+//! energy. Each particle on a surface sticks to it or slides on it: its velocity, or one component of it, is
+//! prescribed in the linear system, which remains exact and cannot diverge. The impulses of the solution decide
 //! which particles must release, slip or stick. Grips persist from substep to substep, so that one solve suffices at
 //! rest. On movable bodies the body's inertia at the point is added instead.
 
@@ -19,9 +19,9 @@ use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
 /// Largest number of solves per iteration to make grips consistent.
 const GRIP_ROUNDS: u32 = 16;
-/// Number of solves after which surfaces no longer release particles, so that the grips converge, and slow particles
-/// that stop, instead of holding them. Otherwise the particles of a stiff rope would alternate between slip and stick,
-/// each in response to the others (ADR 0023).
+/// Number of solves after which surfaces no longer release particles, and slow down particles that stop instead of
+/// holding them, so that the grips converge. Otherwise the particles of a stiff rope would alternate between slip and
+/// stick, each in response to the others (ADR 0023).
 const LOOSE_ROUNDS: u32 = 4;
 /// Depth at the end of an iteration below which a contact is left to the impact pass, metres.
 const IMPACT_DEPTH: f32 = 1e-5;
@@ -242,7 +242,7 @@ impl Touch {
         friction
     }
 
-    /// True if a particle on this surface must not yield to the surface of `other`, which belongs to a less firm body.
+    /// True if a particle on this surface must not yield to the surface of `other`, whose body has a lower priority.
     pub fn pinches(&self, other: &Self, bodies: &[ObstacleBody]) -> bool {
         self.obstacle != other.obstacle
             && bodies[other.body].firmness() < bodies[self.body].firmness()
@@ -479,8 +479,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Initial grip on a particle that approaches a surface at its new velocity. If friction cannot stop the particle,
-    /// it slides, with the friction of the normal impulse.
+    /// Initial grip on a particle that approaches a surface at its new velocity. A particle that friction cannot stop
+    /// slides, with the friction of the normal impulse.
     fn first_grip(&mut self, i: usize, touch: &Touch, bodies: &[ObstacleBody]) -> Grip {
         let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
         let normal = max(touch.speed_min - relative.dot(touch.normal), 0.0) * self.masses[i];
@@ -525,7 +525,7 @@ impl ParticleGroup {
         }
     }
 
-    /// True if bends are part of the solve.
+    /// True if bends are part of the spring solve.
     fn bends_ahead(&self) -> bool {
         self.forest.has_trees() && !self.bends.is_empty()
     }

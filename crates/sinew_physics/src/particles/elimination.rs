@@ -307,8 +307,8 @@ impl System {
     }
 }
 
-/// Inverse inertia of a particle on a surface that yields by `c` per impulse along its normal: with the free particle's
-/// inverse inertia `W`, `W − W n nᵀ W / (n·W n + c)` (Sherman and Morrison 1950).
+/// Inverse inertia of a particle on a surface that yields by `c` per impulse along its normal. With the free particle's
+/// inverse inertia `W`, it is `W − W n nᵀ W / (n·W n + c)` (Sherman and Morrison 1950).
 ///
 /// Inverting the sum `W⁻¹ + n nᵀ / c` instead fails: if the body outweighs the particle by thousands, 32-bit rounding
 /// destroys the particle's tangential part.
@@ -330,8 +330,8 @@ fn is_stiff(block: &Sym3, inertia: &Sym3) -> bool {
 }
 
 /// Inertia that a parent gains from a child. With the child's inertia S, the spring's block B and the child's response
-/// W, it is `B − B W B`. For a free child that equals `S (S + B)⁻¹ B` and `S − S (S + B)⁻¹ S`. The form without
-/// cancellation is used.
+/// W, it is `B − B W B`. For a free child that equals `S (S + B)⁻¹ B` and `S − S (S + B)⁻¹ S`; the function uses the
+/// form without cancellation.
 fn felt_by_parent(inertia: &Sym3, inverse: &Sym3, block: &Sym3, freedom: &Freedom) -> Sym3 {
     let stiff = is_stiff(block, inertia);
     let free = || {

@@ -64,7 +64,7 @@ mod tests {
 
     /// Checks Euler's formula, that all corners are on the sphere, and that the volume is nearly that of a ball.
     #[test]
-    fn a_geodesic_ball_is_closed_and_round() {
+    fn geodesic_sphere_is_closed_and_round() {
         let mut least = 0.0;
         for subdivisions in 0..4 {
             let (corners, triangles) = sphere(subdivisions);

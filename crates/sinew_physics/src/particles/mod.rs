@@ -739,9 +739,9 @@ impl Part {
 mod tests {
     use super::*;
 
-    /// Regression from random test 48: the index of a non-finite particle carries over to its neighbour's impulse.
+    /// Regression from random test 48: a non-finite particle's contact impulse was applied to the particle beside it.
     #[test]
-    fn contact_impulses_that_are_no_numbers_do_not_stay() {
+    fn non_finite_contact_impulses_are_reset_to_zero() {
         let particle = ParticleDef { position: Vec3::ZERO, velocity: Vec3::ZERO, mass: 0.1, radius: 0.01 };
         let mut group = ParticleGroup::new(&GroupDef { particles: vec![particle; 2], ..GroupDef::default() });
         group.contact_impulses = vec![Vec3::splat(f32::INFINITY), Vec3::X];

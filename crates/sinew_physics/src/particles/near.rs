@@ -2,7 +2,8 @@
 //!
 //! A list is valid while its particle and all obstacles stay within the margins for which it was built. A particle
 //! outside its margin is tested against all obstacles. Once many are outside, or an obstacle is, all lists are rebuilt.
-//! Excluded obstacles cannot be hit: the results have the bits of testing all, so lists are not part of the state.
+//! Excluded obstacles cannot be hit: the results equal those of testing all obstacles, bit for bit, so lists are not
+//! part of the state.
 
 use super::contact::{Grip, Placed, distance_at_least};
 use super::{BackstopDef, ParticleGroup};
@@ -331,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_give_the_bits_that_trying_all_gives() {
+    fn cached_lists_give_the_same_bits_as_testing_all_obstacles() {
         // Cases: constant motion; only particles move; a few bodies pass through resting particles.
         for (seed, links, moving_in) in [(0, 19, 5), (1, 19, usize::MAX), (2, 0, 27)] {
             let mut random = Random::new(seed);
@@ -364,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn loose_balls_on_what_stands_still_do_not_hear_of_each_other() {
+    fn loose_particles_on_static_obstacles_do_not_affect_each_other() {
         let mut random = Random::new(3);
         let all = GroupDef { attachments: Vec::new(), ..rain(&mut random, 0, 2) };
         let (obstacles, bodies) = surroundings(&mut random, usize::MAX);
@@ -389,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_from_afar_to_a_ball_at_rest_meets_it() {
+    fn distant_obstacle_that_reaches_a_resting_particle_hits_it() {
         let ball =
             ParticleDef { position: Vec3::new(0.0, 0.1, 0.0), velocity: Vec3::ZERO, mass: 1.0, radius: 0.1 };
         let mut group = ParticleGroup::new(&GroupDef { particles: vec![ball], ..GroupDef::default() });

@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_faces_is_nipped_up_to_the_angle_of_friction() {
+    fn opposing_surfaces_nip_up_to_the_friction_angle() {
         // The opening angles are 30° and 160°, and the slope is that of 21.8°.
         assert!(is_nipped(-0.866, 0.4) && !is_nipped(-0.1737, 0.4));
         // Surfaces that face the same way never press a particle, however rough.

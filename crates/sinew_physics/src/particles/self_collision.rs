@@ -1,10 +1,10 @@
 //! Self-collision: particles of a group without a common spring keep the group's thickness as distance.
 //!
 //! Pairs come from a list that is valid while no particle has moved by half of the list's margin (Verlet 1967). Excess
-//! pairs have no effect, and the list is in the order of its particles, so the results are the bits of testing all, and
-//! the list is not part of the state. Each pair is a row that only presses along the line between its particles, on the
-//! side at the start of the iteration. Particles that move by more than their distance within an iteration pass
-//! through.
+//! pairs have no effect, and the list is in the order of its particles. The results therefore equal those of testing
+//! all pairs, bit for bit, and the list is not part of the state. Each pair is a row that only presses along the line
+//! between its particles, on the side at the start of the iteration. Particles that move by more than their distance
+//! within an iteration pass through.
 //!
 //! Layers that carry a load are thousands of times lighter than the load: rows that share impulses by mass let the load
 //! through. Layers on an immovable obstacle are therefore solved from the obstacle outward, and a particle yields to a

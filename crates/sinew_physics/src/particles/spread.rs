@@ -100,7 +100,7 @@ mod tests {
     use sinew_math::dispatch::{self, Level};
 
     #[test]
-    fn vectors_lie_in_their_lanes_and_come_back() {
+    fn vectors_copied_into_lanes_and_back_are_unchanged() {
         for level in Level::available() {
             for count in [1, 7, 9, 64, 65, 120, 128, 200, 1003] {
                 let vector = |i: usize| Vec3::new(i as f32, i as f32 + 0.25, i as f32 + 0.5);

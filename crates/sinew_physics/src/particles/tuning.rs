@@ -54,8 +54,8 @@ pub(super) const CONJUGATE_ROUNDS: u32 = 200;
 
 /// Factor on the path length for all searches, a ratio.
 ///
-/// Later impulses may change the path slightly. Larger: searches find more candidates. Smaller: particles pass through
-/// obstacles that they are pushed into. Shown by `fast_particle` and the tests of `particles`.
+/// Impulses after the search may change the path slightly. Larger: searches find more candidates. Smaller: particles
+/// pass through obstacles that they are pushed into. Shown by `fast_particle` and the tests of `particles`.
 pub(super) const DETOUR: f32 = 1.5;
 
 /// Gap up to which a particle counts as touching at any speed, as a share of its radius, a ratio.
@@ -76,7 +76,7 @@ pub(super) const MOST_SOLIDS: usize = 16;
 /// Smaller: the search takes more steps along a path. Shown by the tests of `particles`.
 pub(super) const STRIKE_GAP: f32 = 0.005;
 
-/// Share of critical damping of the springs of ropes and strands, a ratio.
+/// Damping of the springs of ropes and strands, as a share of critical damping, a ratio.
 ///
 /// Larger: ropes swing sluggishly. Smaller: ropes vibrate for seconds. Shown by `catenary` and the tests of `rope`.
 pub(super) const ROPE_DAMPING: f32 = 0.1;
@@ -103,8 +103,8 @@ pub(super) const SELF_SWEEPS: u32 = 4;
 /// `folded`.
 pub(super) const SELF_PUSH_SPEED: f32 = 0.1;
 
-/// A spring impulse gives energy to a body; the body keeps a part and passes the rest on. Ratio of the energy passed on
-/// to the energy kept, above which the body gets an added mass.
+/// Ratio of the energy that a body passes on to the energy that it keeps, above which the body gets an added mass. The
+/// energy is that of a spring impulse on the body.
 ///
 /// Larger: a body on ropes hangs lower by up to `g h²` times that ratio under its load. Smaller: rounding errors count
 /// as a mass. Shown by the tests of `held`.

@@ -1,4 +1,4 @@
-//! Questions about one body: bounds, nearest surface, points inside.
+//! Queries about one body: bounds, nearest surface, points inside.
 
 use crate::body::shape::Shape;
 use crate::boxes::{Aabb, Penetration, SurfacePoint};

@@ -5,7 +5,7 @@ use crate::body::shape::{Filter, Sensing};
 use crate::id::{BodyId, ShapeId};
 use core::ops::BitOr;
 
-/// Filter of the shapes of a world that a [`Query`](super::Query) considers. Default: every shape that is no sensor.
+/// Filter of the shapes of a world that a [`Query`](super::Query) considers. Default: every shape except sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[doc(alias = "layer mask")]
 pub struct QueryFilter<'a> {

@@ -127,8 +127,8 @@ impl World {
         keys.into_iter().map(other).map(|index| self.bodies.id(index))
     }
 
-    /// Depth of the deepest overlap of a body with static bodies, metres, at its current pose. Nothing stops a
-    /// kinematic body, so this is how deep its motion moves it into the static world.
+    /// Depth of the deepest overlap of a body with static bodies, metres, at its current pose. Static bodies do not
+    /// stop a kinematic body: for one, this is how deep its motion moves it into the static world.
     #[track_caller]
     pub fn penetration(&self, id: BodyId) -> f32 {
         if self.expect(id).kind == BodyKind::Kinematic {

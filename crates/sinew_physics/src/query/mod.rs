@@ -28,7 +28,11 @@
 //! | [`Ray`](crate::ray::Ray) | shapes on a segment | [`BodyHit`], by fraction |
 //! | [`ShapeCast`] | shapes that a moving shape hits | [`BodyHit`], by fraction |
 //! | [`OverlapWith`] | shapes that share a point with a shape | [`ShapeId`], by body and shape |
-//! | [`PenetrationOf`] | its depth in each of these, and the way out | [`BodyPenetration`], the deepest first |
+//!
+//! [`PenetrationOf`]
+//! depth of a shape in each shape that it overlaps, and the way out
+//! [`BodyPenetration`], the deepest first
+//!
 //! | [`ContainsPoint`] | shapes that contain a point | [`ShapeId`], by body and shape |
 //! | [`NearestTo`] | surfaces within a distance of a point | [`BodySurface`], the nearest first |
 //! | [`NearestToShape`] | surfaces within a distance of a shape | [`BodySurface`], the nearest first |

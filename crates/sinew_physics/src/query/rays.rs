@@ -62,7 +62,7 @@ fn way(ray: &Ray) -> Option<Sweep> {
     }
 }
 
-/// Replaces the hit of a ray if the shape's hit is better.
+/// Tests a ray against the shape of `owner`, and replaces the ray's hit if the new one is better.
 fn ask<P: Fn(BodyId, u32) -> bool>(query: &Query<'_, P>, owner: Owner, ray: &Ray, hit: &mut Option<BodyHit>) {
     let answer = query.meet(owner, |id, shape, frame| ray.ask(id, shape, frame));
     if let Some(answer) = answer.flatten() {
@@ -210,7 +210,7 @@ struct Meetings {
     origins: [[f32; WIDTH]; 3],
     directions: [[f32; WIDTH]; 3],
     limits: [f32; WIDTH],
-    /// Ray at each box, and the box's owner.
+    /// Index of the ray at each box, and the box's owner.
     who: [(usize, Owner); WIDTH],
     count: usize,
 }
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn on_all_registers_they_are_those_of_single_rays() {
+    fn batch_hits_equal_single_ray_hits_at_every_simd_width() {
         let mut random = Random::new(409);
         let (mut hits, mut inside) = (0, 0);
         for _ in 0..80 {

@@ -1,5 +1,5 @@
-//! Impacts transmitted by joints within the step: an impulse moves one body immediately, and its jointed bodies only when
-//! joints are solved, after `pairs` has searched.
+//! Impacts transmitted by joints within the step. An impulse moves one body immediately, and its jointed bodies only
+//! when joints are solved, after `pairs` has searched.
 
 use super::tuning::{BLOW_PASSES, BLOW_SPEED};
 use crate::activity::Activity;

@@ -99,7 +99,7 @@ fn meet(
     collide_again((shape_a, &from_a), (shape_b, &from_b), margin, parting, manifold);
 }
 
-/// Computes the points of a pair without a contact; `ahead` has the meaning of that in [`margin`].
+/// Computes the points of a pair without a contact; `ahead` is used as in [`margin`].
 pub(crate) fn ask((a, b, seams): (&Body, &Body, &Seams<'_>), asked: &mut Asked, ahead: Ahead, dt: f32) {
     let (margin, slop) = margin(a, b, asked.key, ahead, dt);
     meet(a, b, asked.key, margin, &mut asked.parting, &mut asked.manifold);
@@ -168,7 +168,7 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, ahead: Ahead, dt: f32
     })
 }
 
-/// Largest approach speed of the manifold's points, m/s; not negative, and at most [`MOST_APPROACH`].
+/// Largest approach speed of the manifold's points, m/s, from 0 to [`MOST_APPROACH`].
 ///
 /// Bodies are rigid: rates at two points differ by the relative spin times their offset.
 pub(super) fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {

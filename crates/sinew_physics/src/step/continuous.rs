@@ -1,4 +1,4 @@
-//! `continuous`: stops fast bodies that would pass through static ones.
+//! The stage `continuous` stops fast bodies that would pass through static ones.
 
 use crate::activity::Activity;
 use crate::arena::Arena;

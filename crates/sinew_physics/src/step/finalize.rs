@@ -1,4 +1,4 @@
-//! `finalize`: writes the state that the islands computed to the bodies.
+//! The stage `finalize` writes the state that the islands computed to the bodies.
 
 use crate::activity::Activity;
 use crate::arena::Arena;

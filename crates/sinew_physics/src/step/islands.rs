@@ -1,4 +1,4 @@
-//! `islands` and `color`: active bodies connected by contacts, joints, particles and attraction.
+//! The stages `islands` and `color`: groups active bodies that contacts, joints, particles or attraction connect.
 
 use crate::arena::Arena;
 use crate::body::external_work::Work;
@@ -250,7 +250,7 @@ impl Islands {
         self.parent[u32::max(a, b) as usize] = u32::min(a, b);
     }
 
-    /// Number of the island of a body or group with this number; a new island number for the first member of an island.
+    /// Returns the island of the body or group with this number; assigns a new island to the first member of an island.
     fn island_of(&mut self, place: u32) -> u32 {
         let root = self.root(place) as usize;
         if self.island_of_root[root] == NONE {

@@ -17,7 +17,7 @@ use crate::step::blows::Blows;
 pub(crate) struct BroadPhase {
     pub proxies: Proxies,
     pub near: NearPairs,
-    /// Blows that joints will transmit in this step.
+    /// Impacts that joints will transmit in this step.
     pub blows: Blows,
     /// Pairs without a contact that are near enough to have points, in order.
     pub asked: Vec<Asked>,
@@ -361,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn pairs_are_those_that_trying_all_finds() {
+    fn near_pairs_equal_those_of_a_brute_force_search() {
         let mut random = Random::new(11);
         let (mut case, mut found) = (0, 0);
         while case < cases(100_000) {
@@ -386,7 +386,7 @@ mod tests {
                 }
                 if random.unit() < 0.1 && !saved.is_empty() {
                     let bytes = &saved[random.index(saved.len())];
-                    world.load(&mut Reader::new(bytes)).expect("it was saved");
+                    world.load(&mut Reader::new(bytes)).expect("a saved world loads");
                 }
                 found += check(&mut world, case);
                 case += 1;
@@ -457,7 +457,7 @@ mod tests {
     }
 
     #[test]
-    fn pairs_that_are_not_looked_at_have_no_points() {
+    fn skipped_pairs_have_no_contact_points() {
         let mut random = Random::new(12);
         let worlds = cases(600);
         let count: usize = (0..worlds).map(|_| skipped(&mut random, 250)).sum();

@@ -1,4 +1,4 @@
-//! The stages that an island executes independently, by phases.
+//! Phases of a step: the stages that an island executes independently.
 
 use crate::context::StepContext;
 use crate::solver::View;

@@ -1,5 +1,5 @@
-//! `project`: moves the particle groups of an island, after its bodies have moved and before their contacts are
-//! relaxed.
+//! The stage `project` moves the particle groups of an island, after its bodies have moved and before their contacts
+//! are relaxed.
 
 use crate::body::Velocity;
 use crate::body::def::BodyKind;
@@ -28,7 +28,7 @@ pub(crate) struct Surroundings {
     /// Number of groups attached to each body of the island, and of those groups that can be solved together.
     hung_on: Vec<u32>,
     joinable: Vec<u32>,
-    /// Velocities of the island's moving bodies before the groups' impulses, and these impulses, N·s.
+    /// Velocities of the island's moving bodies before the groups' impulses; and those impulses, N·s.
     untouched: Vec<Vec6>,
     pushed: Vec<Vec3>,
 }
@@ -205,9 +205,9 @@ impl Surroundings {
         }
     }
 
-    /// Gives a group's attached particles the velocity of a body to which other groups are attached too, because these
-    /// have pushed the body since. Otherwise the particles' inertia would act on the body one substep late, and a body
-    /// on two ropes would gain energy.
+    /// Gives a group's attached particles the velocity of their body if other groups are attached to it too, because
+    /// those have pushed the body since. Otherwise the particles' inertia would act on the body one substep late, and a
+    /// body on two ropes would gain energy.
     fn join_held(
         &mut self,
         taken: &mut TakenGroup,

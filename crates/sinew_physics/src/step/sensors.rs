@@ -1,4 +1,4 @@
-//! `sensors`: reports sensor events and hits.
+//! The stage `sensors` reports sensor events and hits.
 
 use crate::arena::Arena;
 use crate::body::Body;

@@ -1,4 +1,4 @@
-//! `sleep`: an island whose bodies have all stayed in place for a while is no longer simulated. The test compares
+//! The stage `sleep` stops simulating an island whose bodies have all stayed in place for a while. The test compares
 //! displacements: a squeezed body that vibrates may sleep, a creeping body may not.
 
 use crate::activity::Activity;
@@ -81,8 +81,8 @@ fn count(body: &mut Body, calm: bool, dt: f32) -> f32 {
     }
 }
 
-/// True if the net load accelerates the body steadily: a ball at the turning point on a slope is slow for a second. Not
-/// tested for bodies with joints, which sag for seconds against joint friction.
+/// True if the net load accelerates the body steadily, as for a ball that stays slow for a second at its turning point
+/// on a slope. Not tested for bodies with joints, which sag for seconds against joint friction.
 fn gains(body: &Body, thresholds: &SleepThresholds) -> bool {
     let Gain { velocity: Velocity { linear, angular }, time } = body.gain;
     let is_fast = |gain: Vec3, threshold: f32| gain.length() >= GAINED * threshold / thresholds.time;

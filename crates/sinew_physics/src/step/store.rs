@@ -1,4 +1,4 @@
-//! `store`: writes the islands' impulses to the world.
+//! The stage `store` writes the islands' impulses to the world.
 
 use crate::arena::Arena;
 use crate::contact::Contact;

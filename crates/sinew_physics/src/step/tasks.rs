@@ -1,4 +1,4 @@
-//! Islands as work for threads.
+//! Distribution of islands over threads.
 
 use crate::context::StepContext;
 use crate::island::Island;

@@ -1,4 +1,4 @@
-//! `touch`: determines the begin and end of touches, and wakes bodies.
+//! The stage `touch` determines which touches begin and end, and wakes bodies.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
@@ -122,8 +122,8 @@ fn points_of(pair: &[Contact]) -> impl Iterator<Item = &ManifoldPoint> {
     pair.iter().flat_map(|contact| contact.manifold.points())
 }
 
-/// Sets the same effect for all parts of a pair of shapes. A shape that touched a one-way shape keeps its state. Other
-/// shapes pass if any part approaches from another side.
+/// Sets the same effect for all parts of a pair of shapes. A shape that already touched a one-way shape keeps its
+/// effect. Otherwise the pair passes if any part approaches from another side.
 fn agree(pair: &mut [Contact]) {
     if !pair[0].one_way || pair[0].effect == Effect::Sense {
         return;

@@ -56,8 +56,9 @@ pub(super) const BLOW_SPEED: f32 = 0.3;
 
 /// Number of consecutive joints through which an impact is followed.
 ///
-/// There are five from the pelvis to a hand. Larger: more pairs are tested in steps after an impact. Smaller: the hand
-/// of a ragdoll hit at its trunk is inside the thigh at the end of the step. Shown as [`BLOW_SPEED`].
+/// There are five joints from the pelvis to a hand. Larger: more pairs are tested in steps after an impact. Smaller: the
+/// hand of a ragdoll hit at its trunk is inside the thigh at the end of the step. Shown by the same tests as
+/// [`BLOW_SPEED`].
 pub(super) const BLOW_PASSES: usize = 6;
 
 /// Ratio of the added mass of a body on ropes to its own mass, above which its island's contacts are swept until they
@@ -73,8 +74,8 @@ pub(super) const HEAVY_LOAD: f32 = 4.0;
 /// `held`.
 pub(super) const JOINT_ROUNDS: u32 = 8;
 
-/// Change of such a body's velocity per round, relative to the springs' change in the substep, below which the rounds
-/// end, a ratio.
+/// Change of such a body's velocity per round below which the rounds end: relative to the change by its springs in the
+/// substep, a ratio.
 ///
 /// Larger: ropes of a plank pull against each other. Smaller: the step takes more rounds. Shown by the tests of `held`.
 pub(super) const JOINT_CHANGE: f32 = 1e-4;

@@ -59,8 +59,8 @@ pub(super) struct Roused {
     pub change: Vec6,
 }
 
-/// Solves all islands phase by phase. Objects act before the two phases of each substep. Strands that no object touched
-/// are solved again as strands, so an object that does nothing changes nothing.
+/// Solves all islands phase by phase. Objects act before the two phases of each substep. Strands that no object
+/// touched are solved again as strands, so an object that does nothing changes no bit of the result.
 pub(crate) fn lockstep(
     objects: &mut Objects,
     islands: &mut Islands,

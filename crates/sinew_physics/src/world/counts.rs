@@ -1,4 +1,4 @@
-//! Counts of the parts of a step outside islands, for a profiler that counts.
+//! Counts of a step's work outside islands, reported to a profiler.
 
 use crate::contact::Contact;
 use crate::stage::{Counter, Profiler};

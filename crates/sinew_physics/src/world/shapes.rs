@@ -60,6 +60,7 @@ impl World {
     /// Replaces a shape of a body, keeping its id; the body wakes, with touching and jointed bodies. The next step
     /// reports touches that end, but not touches that continue.
     ///
+    /// # Panics
     /// If the body has no such shape, the new shape is not valid, is a half-space on a body that is not static, or
     /// names a modifier that is not registered, or a dynamic body would have no mass.
     #[doc(alias = "set_collider_shape")]

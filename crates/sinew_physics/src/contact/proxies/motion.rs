@@ -22,7 +22,7 @@ pub(super) struct Stride {
     /// Motion of the centre in the coming step at the current velocity.
     ahead: Vec3,
     spin: f32,
-    /// Possible additional motion in the coming step from an impulse, in any direction.
+    /// Largest additional motion in the coming step due to an impulse, in any direction.
     blow: f32,
     /// Margin of the body's bounds for its motion in the coming step, metres.
     pub grown: f32,
@@ -286,7 +286,7 @@ impl Proxies {
                     self.reach[(home.first + shape) as usize] = grown(body, shape, 0.0);
                 }
             } else if home.count > 0 && body.kind == BodyKind::Dynamic && !body.is_active() {
-                // A body put to sleep by the user is searched although it does not move: its earlier pose is not that of the last search.
+                // A body that the user put to sleep must be searched even though it does not move: its traced pose is outdated.
                 self.traces[home.first as usize] = Trace::NONE;
             }
         }

@@ -1,5 +1,5 @@
-//! Drives act along a joint's directions in addition to the hard constraint: springs, soft welds, motors, dry friction. Each is a row with
-//! compliance in the tree factor, so any stiffness is stable.
+//! Drives act along a joint's directions in addition to the locked ones: springs, soft welds, motors, dry friction.
+//! Each is a row with compliance in the tree factor, so any stiffness is stable.
 
 use crate::joint::def::{Gains, Motor};
 use crate::joint::{DIRECTIONS, JointPose, JointRows, TWIST, displacement, locked_error, open_row};
@@ -130,8 +130,9 @@ impl SolverJoint {
         self.drive.motor.map_or(0.0, |motor| motor.cap(direction) * h)
     }
 
-    /// Marks the directions in which the motor of a linear pin (a hand, a grip) exceeds its cap. This happens because a pin resists
-    /// contacts and stops as inertia does. Pins that also turn bodies are drives, which may hold with more than the cap.
+    /// Marks the directions in which the motor of a linear pin (a hand, a grip) exceeds its cap, which happens because a
+    /// pin resists contacts and stops with its inertia. Pins that also turn bodies are drives, which may hold with more
+    /// than the cap.
     pub(in crate::solver) fn note_exceeded(&mut self, h: f32) {
         self.exceeded = [0; DIRECTIONS];
         if self.drive.motor.is_none_or(|motor| motor.max_torque > 0.0) {

@@ -10,9 +10,10 @@
 //! ```
 //! Several directions are eliminated one after the other, or three rotations together with a 3×3 pivot.
 //!
-//! Residuals are not eliminated. Residuals of gains are impulses on both bodies. If locked rows request a velocity `t` of the child at the
-//! anchor, the parent gets `−I' t`, with `I'` the inertia that the parent gets, and the child follows `t` as it follows its parent
-//! ([`Elimination::follow`]). With `p − I t` instead, the solve would contain the difference of two large numbers.
+//! Residuals are not eliminated. Residuals of rows with gains are impulses on both bodies. If locked rows request a
+//! velocity `t` of the child at the anchor, the parent gets `−I' t`, with `I'` the inertia that the parent gets. The
+//! child then follows `t` in the same way as it follows its parent ([`Elimination::follow`]). With `p − I t` instead,
+//! the solve would contain the difference of two large numbers.
 //!
 //! The code is generic over [`Real`]: one tree, or eight of the same shape side by side. Numbers that are equal in all lanes are broadcast
 //! by [`Spread`].
@@ -582,7 +583,7 @@ mod tests {
     /// An open direction: rotational or not, its axis, its gain.
     type Open = (bool, Vector3<f64>, f64);
 
-    /// A random body of one to thousands of kilograms.
+    /// Returns a random body of `mass`, kg.
     fn body(random: &mut Random, mass: f32) -> Inertia<f64> {
         let size = random.range(0.05, 0.5);
         let moments = Vec3::new(random.range(0.5, 1.0), random.range(0.5, 1.0), random.range(0.5, 1.0))
@@ -636,7 +637,7 @@ mod tests {
     }
 
     #[test]
-    fn joints_hold_leave_open_and_give_back() {
+    fn elimination_locks_rows_drives_open_ones_and_conserves_momentum() {
         let mut random = Random::new(3);
         for round in 0..400 {
             let (light, heavy) = (1.0, random.range(1.0, 100.0));
@@ -674,7 +675,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pivot_of_nothing_is_held_and_never_nan() {
+    fn zero_pivot_locks_the_direction_without_nan() {
         let flat = Symmetric([1.0, 1.0, 0.0, 1.0, 0.0, f64::NAN]);
         assert!(flat.inverse().0.iter().take(2).all(|x| x.is_finite()));
         assert_eq!(Symmetric::<f64>::zero().inverse().0, [0.0; 6]);

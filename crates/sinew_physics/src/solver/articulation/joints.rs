@@ -85,8 +85,9 @@ impl IslandSolver {
         self.solve_trees();
     }
 
-    /// Refines the solution iteratively: with masses of 1 : 100,000 one solve in single precision leaves too large an error. Islands with
-    /// loops are excluded: redundant rows of a closed chain never agree to the last digit, and refinement makes its drives do work.
+    /// Refines the solution iteratively: with masses of 1 : 100,000 one solve in single precision leaves too large an
+    /// error. Islands with loops are excluded: the redundant rows of a closed chain never agree to the last digit, and
+    /// refinement would add energy through its drives.
     pub(in crate::solver) fn refine_joints(&mut self) {
         if !self.loops.is_empty() || self.coupling == Coupling::Turns {
             return;
@@ -106,10 +107,11 @@ impl IslandSolver {
         }
     }
 
-    /// Removes position errors at the predicted poses (SHAKE) with the factor of the substep's start, tree by tree until they are small
-    /// enough: one or two rounds except after violent hits. For a body that turns by much of a radian a round may raise the error and the
-    /// next may lower it again, so a tree keeps its best round and stops when a round gains little. Trees with loops between them, and all
-    /// trees of an island that is not solved by turns, stop together.
+    /// Removes position errors at the predicted poses (SHAKE) with the factor of the substep's start, tree by tree until
+    /// they are small enough: in one or two rounds, except after violent hits. While a body turns by much of a radian, a
+    /// round may raise the error and the next may lower it again. A tree therefore keeps its best round, and stops when a
+    /// round gains little. Trees with loops between them, and all trees of an island that is not solved by turns, stop
+    /// together.
     ///
     /// Returns the largest remaining error, m or rad.
     pub(in crate::solver) fn correct_positions(&mut self, of: Corrected) -> f32 {

@@ -262,7 +262,7 @@ impl Loops {
             answer(&self.joints, joints, links, scratch, g);
             let curvature = dot_of(&g.direction, &g.answer);
             if curvature <= 0.0 {
-                break; // rounding: nothing left that answers
+                break; // only rounding error is left
             }
             let step = square / curvature;
             let mut row = 0;
@@ -358,7 +358,7 @@ fn invert(m: &mut [f32], n: usize, out: &mut Vec<f32>) {
             for k in 0..j {
                 sum -= m[i * n + k] * m[j * n + k];
             }
-            m[i * n + j] = sum; // L·D until it is divided below
+            m[i * n + j] = sum; // L·D, divided by D below
         }
         let mut pivot = m[i * n + i];
         for k in 0..i {
