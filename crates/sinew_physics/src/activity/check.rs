@@ -19,7 +19,7 @@ impl World {
             let joints = self.joints.iter().filter(|(_, joint)| has(joint)).map(|(joint, _)| joint);
             assert!(joints_of.body(index).iter().copied().eq(joints), "joints of body {index}");
             if body.is_awake() {
-                assert_eq!(next[index as usize], index, "what is awake is in no ring");
+                assert_eq!(next[index as usize], index, "an awake body is in no ring");
             }
         }
         self.check_rings();
@@ -48,7 +48,7 @@ impl World {
     fn check_contacts(&self) {
         assert!(self.contacts.is_sorted_by(|p, q| p.key < q.key));
         let keys: BTreeSet<ContactKey> = self.contacts_in_order().map(|contact| contact.key).collect();
-        assert_eq!(keys.len(), self.contacts_in_order().count(), "no pair twice");
+        assert_eq!(keys.len(), self.contacts_in_order().count(), "each contact is in one list only");
         for contact in self.activity.aside.iter() {
             let still = |body: u32| !self.bodies.at(body).can_touch();
             assert!(still(contact.key.a) && still(contact.key.b), "{:?}", contact.key);
@@ -209,7 +209,7 @@ impl Yard {
 }
 
 #[test]
-fn bookkeeping_made_anew_each_step_gives_the_same_bits() {
+fn bookkeeping_rebuilt_each_step_gives_the_same_bits() {
     let (mut asleep, mut awake, mut aside) = (0, 0, 0);
     for seed in 0..6 {
         let mut yard = Yard::new(seed);
@@ -223,7 +223,7 @@ fn bookkeeping_made_anew_each_step_gives_the_same_bits() {
             }
             let mut bytes = Writer::new();
             yard.world.save(&mut bytes);
-            anew.load(&mut Reader::new(bytes.as_bytes())).expect("it was saved");
+            anew.load(&mut Reader::new(bytes.as_bytes())).expect("a saved world loads");
             yard.world.step();
             anew.step_with(&Threads::new(1 + (seed % 4) as usize), &NoProfiler);
             assert_eq!(yard.world.hash(), anew.hash(), "seed {seed}, step {step}");

@@ -86,7 +86,7 @@ impl SleepingContacts {
     fn unlink(&mut self, at: u32) -> Contact {
         let link = &mut self.links[at as usize];
         let (before, after) = (link.before, link.after);
-        let contact = link.contact.take().expect("what is in a list is in use");
+        let contact = link.contact.take().expect("a listed link holds a contact");
         for (own, body) in [contact.key.a, contact.key.b].into_iter().enumerate() {
             match before[own] {
                 NONE => self.first[body as usize] = after[own],
@@ -107,7 +107,7 @@ impl SleepingContacts {
 
 impl Link {
     fn key(&self) -> ContactKey {
-        self.contact.as_ref().expect("what is in a list is in use").key
+        self.contact.as_ref().expect("a listed link holds a contact").key
     }
 }
 
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn each_body_finds_its_contacts_and_no_others() {
+    fn body_lists_contain_only_contacts_of_the_body() {
         let mut random = Random::new(3);
         let (mut aside, mut expected) = (SleepingContacts::default(), BTreeSet::new());
         aside.reserve(BODIES as usize);

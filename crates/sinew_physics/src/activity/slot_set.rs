@@ -57,7 +57,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn it_holds_what_a_sorted_set_holds() {
+    fn slot_set_equals_a_sorted_set() {
         let mut random = Random::new(5);
         let (mut set, mut expected) = (SlotSet::default(), BTreeSet::new());
         for most in [1, 64, 65, 5000, 70_000] {

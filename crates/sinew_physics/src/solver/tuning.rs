@@ -12,9 +12,9 @@
 
 /// Number of contacts at or above which an island of free bodies takes half of the substeps.
 ///
-/// Many contacts damp all motion, and no single one dominates. Sensible from 16 to some hundreds. Smaller: with 16, 10,000 boxes take a
-/// quarter less time, but `cards` sink by 2.009 mm (allowed: 2.0) and `wave_pile` sleeps 52 steps too late (ADR 0015). Larger: small heaps take
-/// all substeps. Shown by `cards`, `wave_pile`.
+/// Many contacts damp all motion, and no single one dominates. Sensible from 16 to some hundreds. Smaller: with 16,
+/// 10,000 boxes take a quarter less time, but `cards` sink by 2.009 mm (allowed: 2.0) and `wave_pile` sleeps 52 steps
+/// too late (ADR 0015). Larger: small heaps take all substeps. Shown by `cards`, `wave_pile`.
 pub(super) const DAMPED_CONTACTS: usize = 32;
 
 /// Number of contacts per body at or above which an island with limp joints takes half of the substeps, a ratio.
@@ -578,9 +578,9 @@ pub(super) const ENERGY_SLACK: f32 = 1e-3;
 
 /// Speed above which a solution counts as diverged, as a multiple of the world's speed limit.
 ///
-/// If a solution exceeds this speed, the island moves as one rigid piece for the pass. Speeds are limited before the solve, so the factor must be
-/// well above 1. Sensible from
-/// 1.5 to 10. Shown by the test `trouble::extreme_impulses_are_limited_and_reported`.
+/// If a solution exceeds this speed, the island moves as one rigid piece for the pass. Speeds are limited before the
+/// solve, so the factor must be well above 1. Sensible from 1.5 to 10. Shown by the test
+/// `trouble::extreme_impulses_are_limited_and_reported`.
 pub(super) const DIVERGED_SPEED: f32 = 2.5;
 
 /// Spin above which a solution counts as diverged, rad/s.
@@ -593,7 +593,7 @@ pub(super) const DIVERGED_SPIN: f32 = 1e4;
 ///
 /// There is one value for both units, since an island is judged by the largest error of all its rows (see [`POSITION_TOLERANCE`]). Larger:
 /// contradictory rows fling bodies. Smaller: crashes count as contradictions, and ragdolls move as one rigid piece. Sensible from 0.03 to
-/// 0.5. Shown by the `random_worlds`.
+/// 0.5. Shown by the test `random_worlds`.
 pub(super) const TORN: f32 = 0.1;
 
 // ---- Flight and strands ----

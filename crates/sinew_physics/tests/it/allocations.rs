@@ -191,11 +191,15 @@ fn a_warm_step_with_objects_allocates_nothing() {
 }
 
 #[test]
-fn the_counter_counts_one_allocation() {
+fn allocation_counter_counts_one_allocation() {
     let mut list: Vec<u32> = Vec::new();
     assert_eq!(allocation_counter::measure(|| list.push(1)).count_total, 1);
     list.clear();
-    assert_eq!(allocation_counter::measure(|| list.push(1)).count_total, 0, "it kept its room");
+    assert_eq!(
+        allocation_counter::measure(|| list.push(1)).count_total,
+        0,
+        "a list with spare capacity must not allocate"
+    );
 }
 
 #[test]

@@ -123,7 +123,11 @@ fn backstop_impulses_are_equal_and_opposite() {
         };
         let (before, turning) = momentum(&world);
         (0..20).for_each(|_| world.step());
-        assert_eq!(world.velocity(body).linear, Vec3::ZERO, "it is not there yet");
+        assert_eq!(
+            world.velocity(body).linear,
+            Vec3::ZERO,
+            "the particle must not have hit the backstop yet"
+        );
         (0..40).for_each(|_| world.step());
         let (after, turning_after) = momentum(&world);
         assert!((after - before).length() < 1e-5, "momentum {before} before, {after} after, N·s");
@@ -139,7 +143,7 @@ fn backstop_impulses_are_equal_and_opposite() {
             let own = world.particles(group).velocities()[0].z;
             assert!((own - together).abs() < 1e-4 * speed, "{own} for {together}");
         } else {
-            assert!(v.angular.x.abs() > 0.1, "and turns: {}", v.angular.x);
+            assert!(v.angular.x.abs() > 0.1, "the body must rotate; spin {}", v.angular.x);
         }
     }
 }
@@ -165,7 +169,7 @@ fn a_backstop_moves_with_its_body() {
         world.step();
         let (at, frame) = (world.particles(group).positions()[0], world.transform(body));
         let gap = (at - frame.point(Vec3::X)).length() - 0.2 - RADIUS;
-        assert!(gap > -1e-4, "{} m in it", -gap);
+        assert!(gap > -1e-4, "the particle is {} m inside the backstop", -gap);
         pushed += u32::from(gap < 1e-3);
     }
     let speed = world.particles(group).velocities()[0].length();
@@ -226,7 +230,7 @@ fn threads_and_snapshots_have_the_same_bits() {
             let mut w = Writer::new();
             one.save(&mut w);
             let mut again = World::new(WorldDef::default());
-            again.load(&mut Reader::new(w.as_bytes())).expect("own snapshot");
+            again.load(&mut Reader::new(w.as_bytes())).expect("the world's own snapshot loads");
             let groups = one.group_ids().zip(again.group_ids()).next().expect("there is one");
             assert_eq!(again.particles(groups.1).backstops(), one.particles(groups.0).backstops());
             copy = Some(again);
@@ -257,7 +261,7 @@ fn a_backstop_sleeps_and_wakes_with_its_body() {
         world.step();
         steps += 1;
     }
-    assert!(steps < 600, "they sleep");
+    assert!(steps < 600, "the group and the body must fall asleep");
     world.apply_impulse(body, Vec3::X * 20.0, world.center_of_mass(body));
     (0..3).for_each(|_| world.step());
     assert!(world.particles(group).is_awake(), "removing the support must wake the particles");

@@ -20,7 +20,7 @@ fn settled(world: &mut World, id: BodyId) {
         world.step();
         !world.is_awake(id)
     });
-    assert!(!world.is_awake(id), "it sleeps");
+    assert!(!world.is_awake(id), "the body must sleep");
 }
 
 fn height(world: &World, id: BodyId) -> f32 {
@@ -33,8 +33,8 @@ fn reborn(world: &World) -> World {
     world.save(&mut w);
     world.save_shapes(&mut shapes);
     let mut other = World::new(WorldDef::default());
-    other.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("they were saved");
-    other.load(&mut Reader::new(w.as_bytes())).expect("it was saved");
+    other.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("saved shapes load");
+    other.load(&mut Reader::new(w.as_bytes())).expect("a saved world loads");
     other
 }
 
@@ -74,17 +74,17 @@ fn damping_and_gravity_scale_are_those_of_the_definition() {
     run(&mut one, 30);
     run(&mut other, 30);
     assert_eq!(one.hash(), other.hash());
-    assert!(one.velocity(a).linear.x < 2.2, "it is damped");
+    assert!(one.velocity(a).linear.x < 2.2, "damping must slow body a");
 }
 
 #[test]
-fn a_sleeper_wakes_when_it_weighs_nothing() {
+fn sleeping_body_wakes_when_its_gravity_scale_becomes_zero() {
     let mut world = world();
     floor(&mut world);
     let ball = world.add_body(&sphere_body(0.2, Vec3::Y * 0.2));
     settled(&mut world, ball);
     world.set_gravity_scale(ball, 1.0);
-    assert!(!world.is_awake(ball), "nothing changed");
+    assert!(!world.is_awake(ball), "the ball must sleep while nothing changes");
     world.set_gravity_scale(ball, -1.0);
     let start = height(&world, ball);
     run(&mut world, 60);
@@ -168,7 +168,7 @@ fn a_crate_whose_load_shifts_tips_over_its_ledge() {
 }
 
 #[test]
-fn a_body_takes_every_kind() {
+fn body_changes_between_all_kinds() {
     use BodyKind::{Dynamic, Kinematic, Static};
     for (from, to) in
         [(Static, Dynamic), (Static, Kinematic), (Kinematic, Static), (Kinematic, Dynamic), (Dynamic, Static)]
@@ -252,7 +252,7 @@ fn pairs(list: &[(ShapeId, ShapeId)]) -> Vec<(u32, u32)> {
 }
 
 #[test]
-fn shapes_come_and_go_with_their_events() {
+fn added_and_removed_shapes_report_touch_events() {
     let mut world = world();
     let plate = |x: f32| ShapeDef {
         body_from_shape: Transform::from_translation(Vec3::X * x),
@@ -268,7 +268,7 @@ fn shapes_come_and_go_with_their_events() {
     world.step();
     assert_eq!(pairs(&world.events().shapes_begin), [(2, 0)], "the new body must begin a contact");
     run(&mut world, 60);
-    assert!((height(&world, balls[2]) - 0.2).abs() < 0.01, "and bears");
+    assert!((height(&world, balls[2]) - 0.2).abs() < 0.01, "the new body must support the ball");
     // The first shape is removed, and the numbers of the others decrease.
     world.remove_shape(ShapeId { body: shelf, shape: 0 }, MassUpdate::FromShapes);
     assert!(world.is_awake(balls[0]));
@@ -282,7 +282,7 @@ fn shapes_come_and_go_with_their_events() {
     run(&mut world, 60);
     run(&mut other, 60);
     assert_eq!(world.hash(), other.hash());
-    assert!(height(&world, balls[0]) < -3.0, "it fell");
+    assert!(height(&world, balls[0]) < -3.0, "the ball without support must fall");
     for ball in [balls[1], balls[2]] {
         assert!((height(&world, ball) - 0.2).abs() < 0.01, "it did not: {}", height(&world, ball));
     }
@@ -544,7 +544,7 @@ fn a_rope_joint_keeps_its_length() {
 }
 
 #[test]
-fn locked_axes_hold_and_free_ones_go_on() {
+fn locked_axes_hold_and_free_axes_move() {
     let all = [
         LockedAxes::TRANSLATION_X,
         LockedAxes::TRANSLATION_Y,
@@ -605,7 +605,7 @@ impl PhysicsObject for Count {
 }
 
 #[test]
-fn a_copy_has_the_same_future_and_its_own() {
+fn copied_world_has_the_same_future_and_is_independent() {
     let mut world = world();
     floor(&mut world);
     let ids: Vec<BodyId> = (0..8)
@@ -654,7 +654,7 @@ fn bodies_moved_are_those_whose_pose_changed() {
         let before = poses(&world);
         world.step();
         let moved: BTreeSet<BodyId> = world.bodies_moved().collect();
-        assert_eq!(moved.len(), world.bodies_moved().count(), "each once");
+        assert_eq!(moved.len(), world.bodies_moved().count(), "each moved body must be listed once");
         let changed = before.iter().filter(|(id, pose)| world.transform(*id) != *pose);
         let missed: Vec<_> = changed.filter(|(id, _)| !moved.contains(id)).collect();
         assert!(missed.is_empty(), "{missed:?}");
@@ -666,7 +666,7 @@ fn bodies_moved_are_those_whose_pose_changed() {
 }
 
 #[test]
-fn a_body_is_found_while_it_is_there() {
+fn body_handle_is_valid_until_the_body_is_removed() {
     let mut world = world();
     let ball = world.add_body(&BodyDef { user_data: 5, ..sphere_body(0.5, Vec3::Y) });
     let found = world.get(ball).expect("it is there");

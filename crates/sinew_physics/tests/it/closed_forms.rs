@@ -192,7 +192,7 @@ fn a_restored_world_steps_like_the_original() {
 }
 
 #[test]
-fn threads_and_frame_rates_do_not_matter() {
+fn results_do_not_depend_on_threads_or_frame_rates() {
     let build = || {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);

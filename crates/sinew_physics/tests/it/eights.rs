@@ -144,7 +144,7 @@ fn over_a_ball(beside: usize, start: usize) -> [f32; 2] {
 /// In SIMD lanes the plane stops particles after their springs; one by one it stops them within each spring. Folds
 /// alone change the stretch by up to 4 %, so the test compares means of eight starts.
 #[test]
-fn cloth_hangs_over_a_ball_alike_in_lanes_and_one_by_one() {
+fn cloth_over_a_ball_is_alike_in_lanes_and_solved_individually() {
     let [lanes, others] = [0, 16].map(|beside| {
         let all: [[f32; 2]; 8] = core::array::from_fn(|start| over_a_ball(beside, start));
         [0, 1].map(|k| all.iter().map(|figures| figures[k]).sum::<f32>() / all.len() as f32)

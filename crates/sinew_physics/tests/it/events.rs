@@ -329,7 +329,7 @@ fn check(seed: u64) -> usize {
 }
 
 #[test]
-fn events_are_what_the_poses_say_for_any_threads_and_across_snapshots() {
+fn events_match_an_oracle_of_poses_for_any_threads_and_across_snapshots() {
     let full = std::env::var_os("SINEW_FULL").is_some();
     let seen: usize = (0..if full { 200 } else { 6 }).map(check).sum();
     assert!(seen > if full { 100_000 } else { 3_000 }, "only {seen} pairs of shapes were checked");
@@ -375,7 +375,7 @@ fn extreme_hits_are_reported_finite() {
         let at = Vec3::new((i / 5) as f32 * 0.41, 0.2 + (i % 5) as f32 * 0.405, 1.0);
         last = Some(world.add_body(&BodyDef::dynamic(Shape::cuboid(Vec3::splat(0.2))).at(at)));
     }
-    let last = last.expect("there are some");
+    let last = last.expect("at least one hit is reported");
     let bouncy = Material { friction: 0.25, restitution: 0.5, ..Material::default() };
     let cone = ShapeDef { material: bouncy, ..ShapeDef::new(Shape::cone(0.5, 0.25)) };
     world.add_shape(last, &cone, MassUpdate::Keep);

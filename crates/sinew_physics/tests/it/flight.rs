@@ -22,7 +22,7 @@ fn flown(world: &mut World, id: BodyId, steps: usize) -> (Transform, Velocity) {
 }
 
 #[test]
-fn bits_are_the_same_alone_and_in_a_crowd() {
+fn flying_body_has_the_same_bits_alone_and_in_a_crowd() {
     for i in [0, 7, 11, 18] {
         let mut crowd = World::new(WorldDef::default());
         let ids: Vec<_> = (0..19).map(|i| spinning(&mut crowd, i)).collect();

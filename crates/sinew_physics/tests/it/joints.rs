@@ -112,7 +112,7 @@ fn a_motor_steps_as_a_second_order_system() {
 }
 
 #[test]
-fn a_weak_motor_pushes_with_its_cap_and_no_more() {
+fn weak_motor_pushes_with_at_most_its_cap() {
     let (mut world, b, mut def) = arm(0.0);
     def.motor = Some(Motor::spin(1000.0, 3.0));
     let id = world.add_joint(&def);
@@ -392,7 +392,7 @@ fn a_soft_weld_bends_under_load_by_its_stiffness() {
 }
 
 #[test]
-fn six_directions_are_free_or_held_as_defined() {
+fn six_dof_directions_are_free_or_locked_as_defined() {
     use AxisMotion::{Free, Limited, Locked};
     // The joint is free along x and about z only.
     let six = SixDof {

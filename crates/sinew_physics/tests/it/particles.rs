@@ -320,7 +320,7 @@ fn friction_holds_below_its_angle_and_slides_above() {
 /// A particle that starts inside a solid leaves at 0.5 m/s, keeps no velocity from that motion, and does not stretch
 /// its spring.
 #[test]
-fn particles_starting_inside_come_out_slowly() {
+fn particles_that_start_inside_a_shape_leave_it_slowly() {
     let h = 1.0 / 480.0;
     let slab = obstacle(Shape::Box { half_extents: Vec3::new(1.0, 0.5, 1.0) }, Transform::IDENTITY, 0.3, 0.0);
     let def = GroupDef {

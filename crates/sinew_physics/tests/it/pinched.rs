@@ -102,7 +102,7 @@ fn cloth_on_the_ground_carries_a_roller() {
 
 /// The end of a rope that starts in the narrow crease between two limbs comes out without a gain of energy.
 #[test]
-fn a_rope_end_starting_in_a_crease_comes_out() {
+fn rope_end_that_starts_in_a_crease_leaves_it() {
     for bend in [0.2_f32, 0.8, 1.6] {
         let mut world = World::new(WorldDef::default());
         let limb = |turn: f32| {

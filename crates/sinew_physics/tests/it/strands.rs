@@ -77,7 +77,7 @@ fn run(world: &mut World, steps: usize) {
 }
 
 #[test]
-fn bits_are_the_same_alone_and_beside_others() {
+fn strand_has_the_same_bits_alone_and_beside_others() {
     // A strand of 24 or more links is divided into pieces, one per lane.
     let lengths = |i: u32| [4, 7, 7, 26][i as usize % 4];
     let mut crowd = World::new(WorldDef::default());

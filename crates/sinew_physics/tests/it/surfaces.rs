@@ -81,7 +81,7 @@ fn a_block_holds_to_the_static_angle_and_slides_with_the_other_coefficient() {
 }
 
 #[test]
-fn on_the_level_it_brakes_with_the_coefficient_of_sliding_and_then_stays() {
+fn sliding_box_brakes_by_sliding_friction_and_then_sticks() {
     let material = Material { friction: 0.2, static_friction: Some(0.8), ..Material::DEFAULT };
     let (mut world, block, _) = on_slope(0.0, material);
     run(&mut world, 30);

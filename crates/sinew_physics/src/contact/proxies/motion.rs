@@ -286,7 +286,7 @@ impl Proxies {
                     self.reach[(home.first + shape) as usize] = grown(body, shape, 0.0);
                 }
             } else if home.count > 0 && body.kind == BodyKind::Dynamic && !body.is_active() {
-                // A body that the user put to sleep must be searched even though it does not move: its traced pose is outdated.
+                // A body that the user put to sleep is searched although it does not move: its traced pose is outdated.
                 self.traces[home.first as usize] = Trace::NONE;
             }
         }

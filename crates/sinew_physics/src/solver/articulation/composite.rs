@@ -31,7 +31,7 @@ impl IslandSolver {
                 let on_side = &on_side[..rows.count];
                 let Some(link) = self.links.get(side as usize) else { continue };
                 let center = self.bodies[side as usize].pose.translation;
-                // One side is the subtree below this joint. The other side is the rest of the tree; it is empty if a fixed body
+                // One side is the subtree below this joint. The other side is the rest of the tree, unless a fixed body
                 // holds the tree.
                 let (piece, reference) = if let Some(piece) = self.pins.piece(j) {
                     (Some(piece), self.reference(link.tree))

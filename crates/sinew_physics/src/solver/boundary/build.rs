@@ -1,4 +1,4 @@
-//! `prepare`: copies bodies, joints and contacts of the world to the arrays of one island's solver.
+//! The stage `prepare`: copies bodies, joints and contacts of the world to the arrays of one island's solver.
 
 use crate::body::def::BodyKind;
 use crate::body::external_work::Work;

@@ -1,4 +1,4 @@
-//! `store`: copies the arrays of one island's solver to the results for the world.
+//! The stage `store`: copies the arrays of one island's solver to the results for the world.
 
 use super::solution::{IslandSolution, SolvedBody, SolvedJoint};
 use crate::body::Velocity;

@@ -58,7 +58,7 @@ mod tests {
     use sinew_math::{Random, trig};
 
     #[test]
-    fn no_point_of_the_disk_leaves_less_energy() {
+    fn least_energy_impulse_is_minimal_within_the_disk() {
         let mut random = Random::new(4);
         for _ in 0..2000 {
             let (p, q, r) = (random.range(0.1, 3.0), random.range(-1.0, 1.0), random.range(0.1, 30.0));

@@ -154,7 +154,7 @@ mod tests {
     use sinew_math::Random;
 
     #[test]
-    fn edges_of_a_color_share_no_moving_body() {
+    fn edges_of_one_color_share_no_moving_body() {
         let mut random = Random::new(5);
         let mut coloring = Coloring::default();
         for case in 0..200 {

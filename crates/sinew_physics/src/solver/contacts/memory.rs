@@ -7,9 +7,9 @@ use crate::solver::tuning::{BOUNCE_SPEED, IMPACT_JUMP, LASTING};
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3};
 
-/// Applies the starting impulses to the bodies: those of the last substep. If they increased sharply, scales them down to
-/// the sum of the substep before, since an impact must not be repeated. At rest the load moves between points, so the
-/// sums are compared.
+/// Applies the starting impulses to the bodies: those of the last substep. If these increased sharply, scales them down
+/// to the sum of the substep before, since an impact must not be repeated. At rest the load moves between points, so
+/// sums over all points are compared.
 #[inline(always)]
 pub(super) fn warm_start<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,

@@ -60,7 +60,10 @@ fn substep(level: Level, bodies: &mut [SolverBody], velocities: &mut [Vec6]) -> 
     let mut poses = vec![Transform::IDENTITY; bodies.len()];
     run_at(level, Predict { bodies, velocities, h: H, poses: &mut poses });
     run_at(level, IntegratePosition { bodies, velocities, before: &before, h: H });
-    assert!(poses.iter().zip(&*bodies).all(|(pose, body)| *pose == body.pose), "what was predicted");
+    assert!(
+        poses.iter().zip(&*bodies).all(|(pose, body)| *pose == body.pose),
+        "predicted poses equal integrated ones"
+    );
     run_at(level, RefreshInertia(bodies));
     let after = run_at(level, KineticEnergy { bodies, velocities });
     bits.extend([energy, after].map(f32::to_bits));
@@ -75,7 +78,7 @@ fn substep(level: Level, bodies: &mut [SolverBody], velocities: &mut [Vec6]) -> 
 }
 
 #[test]
-fn all_levels_have_the_same_bits() {
+fn kernels_give_the_same_bits_at_every_simd_level() {
     let (bodies, velocities) = random_island(21);
     let results: Vec<_> = Level::available()
         .map(|level| substep(level, &mut bodies.clone(), &mut velocities.clone()))
@@ -84,7 +87,7 @@ fn all_levels_have_the_same_bits() {
 }
 
 #[test]
-fn a_body_has_the_bits_that_it_has_alone() {
+fn body_in_a_batch_has_the_same_bits_as_alone() {
     let (mut bodies, mut velocities) = random_island(21);
     let alone: Vec<_> = bodies
         .iter()
@@ -101,7 +104,7 @@ fn a_body_has_the_bits_that_it_has_alone() {
 }
 
 #[test]
-fn poses_and_momenta_are_those_of_the_formulas() {
+fn kernel_poses_and_momenta_match_scalar_formulas() {
     let (mut bodies, mut velocities) = random_island(21);
     let before = bodies.clone();
     let kernel = IntegrateVelocity {

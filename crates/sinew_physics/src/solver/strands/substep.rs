@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn all_levels_have_the_same_bits_and_so_has_a_single_strand() {
+    fn strands_have_the_same_bits_at_every_simd_level_and_alone() {
         for hook in [Some(&Hook::EMPTY), None] {
             let step = |level: Level| {
                 let mut links = random_links(6);
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lane_whose_numbers_mean_nothing_is_left_and_disturbs_no_other() {
+    fn non_finite_lane_is_rejected_and_leaves_other_lanes_unchanged() {
         let mut expected = random_links(4);
         dispatch::run(advance(&mut expected, None, WIDTH));
         let mut links = random_links(4);
@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn a_strand_moves_as_its_pieces_do() {
+    fn strand_cut_into_pieces_moves_as_the_whole_strand() {
         for (count, hook) in [(24, Some(&Hook::EMPTY)), (29, Some(&Hook::EMPTY)), (26, None), (40, None)] {
             let mut whole = random_links(count);
             for link in &mut whole {

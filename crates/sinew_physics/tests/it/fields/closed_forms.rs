@@ -346,7 +346,7 @@ fn spring(at: &FieldPoint, parameters: &[f32; field::PARAMETERS]) -> Wrench {
 }
 
 #[test]
-fn a_users_function_is_a_field() {
+fn registered_user_function_acts_as_a_field() {
     let mut world = weightless();
     let id = world.add_body(&point_mass(1.0, Vec3::X, Vec3::ZERO));
     let group = world.add_particles(&particle(1.0, 0.0, Vec3::Y));

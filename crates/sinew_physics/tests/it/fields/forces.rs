@@ -33,7 +33,7 @@ fn a_lasting_force_equals_a_force_each_step() {
 }
 
 #[test]
-fn a_push_off_centre_also_turns() {
+fn off_centre_push_also_rotates_the_body() {
     let mut world = weightless();
     let id = world.add_body(&sphere_body(0.5, Vec3::ZERO));
     let (mass, moment) = (world.mass(id).mass, world.mass(id).inertia.diagonal.z);
@@ -97,7 +97,7 @@ fn a_bullet_leaves_its_momentum() {
 }
 
 #[test]
-fn a_bullet_off_centre_moves_on_with_the_point_it_struck() {
+fn off_centre_bullet_gets_the_velocity_of_the_struck_point() {
     let mut world = weightless();
     let rotation = Rotation::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), 0.7);
     let block = world.add_body(&BodyDef {

@@ -65,7 +65,10 @@ fn sheet_force_follows_normal_speed_squared() {
             );
         }
     }
-    assert!(blown(90f32.to_radians(), wind(Vec3::Y * 8.0)).length() < 1e-6, "it slides along it");
+    assert!(
+        blown(90f32.to_radians(), wind(Vec3::Y * 8.0)).length() < 1e-6,
+        "wind along the sheet must exert no force"
+    );
 }
 
 /// Lift of a plate: `½ ρ C_l |w|² A cos θ sin θ`, across the stream.
@@ -88,8 +91,8 @@ fn a_flat_sheet_reaches_terminal_velocity() {
     run(&mut world, 240);
     let velocities = world.particles(group).velocities();
     let mean = velocities.iter().copied().sum::<Vec3>() / velocities.len() as f32;
-    close(-mean.y, (2.0f32 * 0.2 * 9.81 / (1.2 * 1.3)).sqrt(), 2e-3, "steady speed");
-    close(whole(&world, still, group).y, 0.2 * 9.81, 5e-3, "it bears its weight");
+    close(-mean.y, (2.0f32 * 0.2 * 9.81 / (1.2 * 1.3)).sqrt(), 2e-3, "terminal speed of the sheet");
+    close(whole(&world, still, group).y, 0.2 * 9.81, 5e-3, "wind force must equal the sheet's weight");
 }
 
 /// Silk of one gram stays slower than the storm; an explicit force would give it a hundred times the storm's speed.
@@ -107,7 +110,10 @@ fn light_sheets_never_exceed_the_wind() {
         let bad = world.particles(group).velocities().iter().find(|v| !(v.y > 0.0 && v.y < 60.001));
         assert_eq!(bad, None, "step {}", world.step_count());
     }
-    assert!(world.particles(group).velocities().iter().all(|v| v.y > 50.0), "it goes with it");
+    assert!(
+        world.particles(group).velocities().iter().all(|v| v.y > 50.0),
+        "the sheet must move with the wind"
+    );
 }
 
 #[test]
@@ -122,7 +128,7 @@ fn without_faces_particles_are_balls() {
 }
 
 #[test]
-fn faces_are_of_three_particles_and_there_once() {
+fn invalid_or_duplicate_faces_are_rejected() {
     let with = |faces: Vec<[u32; 3]>| GroupDef { faces, ..sheet(0.0) }.check();
     assert!(with(vec![[0, 1, 2], [2, 1, 3]]).is_ok());
     for bad in [vec![[0, 1, 1]], vec![[0, 1, 30]], vec![[0, 1, 2], [3, 4, 5], [2, 0, 1]]] {

@@ -93,7 +93,7 @@ fn a_restored_world_continues_equally() {
 }
 
 #[test]
-fn threads_do_not_matter() {
+fn field_results_do_not_depend_on_threads() {
     let hash = |threads: usize| {
         let mut world = crowded(2.0);
         for _ in 0..90 {
@@ -150,9 +150,9 @@ fn fields_wake_and_keep_awake() {
     let (mut world, id) = sleeper();
     let region = Region::ball(Vec3::ZERO, 2.0, Fade::None);
     let field = world.add_field(&FieldDef { region, ..FieldDef::new(up) });
-    assert!(!world.is_awake(id), "out of reach");
+    assert!(!world.is_awake(id), "a field out of reach must not wake the body");
     world.set_field(field, &FieldDef::new(up));
-    assert!(world.is_awake(id), "reached now");
+    assert!(world.is_awake(id), "a field that reaches the body must wake it");
     run(&mut world, 120);
     assert!(!world.is_awake(id), "a steady field must let the body sleep");
     world.remove_field(field);
@@ -160,10 +160,10 @@ fn fields_wake_and_keep_awake() {
     let gusts = Some(Gusts { speed: 1.0, length: 1.0, time: 1.0, seed: 1 });
     let field = world.add_field(&FieldDef::new(FieldKind::Wind(Wind { gusts, ..Wind::default() })));
     run(&mut world, 120);
-    assert!(world.is_awake(id), "gusts keep it awake");
+    assert!(world.is_awake(id), "gusts must keep the body awake");
     world.set_field(field, &FieldDef::new(FieldKind::Wind(Wind::default())));
     run(&mut world, 120);
-    assert!(!world.is_awake(id), "still air does not");
+    assert!(!world.is_awake(id), "still air must let the body sleep");
 }
 
 #[test]

@@ -42,7 +42,7 @@ fn pebbles() -> World {
 }
 
 #[test]
-fn a_state_comes_back_in_another_world_with_the_library() {
+fn snapshot_loads_in_another_world_with_the_shape_library() {
     let mut world = pebbles();
     (0..60).for_each(|_| world.step());
     let (state, shapes) = (saved(&world), library(&world));

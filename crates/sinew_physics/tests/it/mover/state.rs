@@ -93,7 +93,7 @@ fn rollback_repeats_the_same_path() {
 }
 
 #[test]
-fn threads_change_nothing() {
+fn mover_results_do_not_depend_on_threads() {
     let hashes = [1, 2, 4].map(|count| {
         let (mut world, ids) = busy();
         let threads = Threads::new(count);

@@ -196,7 +196,7 @@ fn thin_walls_stop_a_mover_at_50_metres_a_second() {
 }
 
 #[test]
-fn a_slope_is_walked_on_up_to_the_limit_and_slid_down_beyond_it() {
+fn mover_walks_on_slopes_up_to_its_limit_and_slides_on_steeper_ones() {
     for (degrees, walks) in [(10.0_f32, true), (30.0, true), (48.0, true), (52.0, false), (70.0, false)] {
         let angle = degrees.to_radians();
         let mut world = level();

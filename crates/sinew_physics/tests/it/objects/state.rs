@@ -132,7 +132,7 @@ impl PhysicsObject for Careless {
 }
 
 #[test]
-fn a_wrong_load_is_an_error_and_changes_nothing() {
+fn failed_object_load_returns_an_error_and_changes_nothing() {
     let mut world = mixed();
     let counter = world.add_object(Box::new(Counter { asked: 3 }));
     let careless = world.add_object(Box::new(Careless { reads: 4 }));

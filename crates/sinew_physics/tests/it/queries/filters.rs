@@ -31,7 +31,7 @@ fn met(world: &World, ids: &[BodyId], ray: &Ray, filter: QueryFilter<'_>) -> Vec
 }
 
 #[test]
-fn layers_masks_and_groups_are_those_of_a_shape() {
+fn query_filter_applies_layers_masks_and_groups_like_a_shape() {
     let defs = [
         filtered(1, u32::MAX, 0),
         filtered(2, u32::MAX, 0),

@@ -84,7 +84,7 @@ fn top(world: &World, id: BodyId) -> Option<f32> {
 }
 
 #[test]
-fn asleep_and_awake_alike() {
+fn queries_find_sleeping_and_awake_bodies_alike() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     let id = world.add_body(&box_body(Vec3::splat(0.5), Vec3::Y * 0.5));

@@ -95,7 +95,7 @@ fn ties_go_by_body_and_shape() {
 }
 
 #[test]
-fn batches_answer_as_single_questions_do() {
+fn batched_queries_equal_single_queries() {
     let mut random = Random::new(405);
     let populated = super::random::Populated::new(40, 4.0, &mut random);
     let query = populated.world.query();
@@ -125,7 +125,7 @@ fn batches_answer_as_single_questions_do() {
 
 /// A batch gives the results of single rays, for any world, any query and any ends of the rays.
 #[test]
-fn many_rays_hit_what_each_by_itself_hits() {
+fn batched_rays_hit_the_same_shapes_as_single_rays() {
     let mut random = Random::new(410);
     let (mut asked, mut inside) = (0, 0);
     while asked < cases(100_000) as usize {

@@ -22,7 +22,7 @@ fn each_shape() -> impl Iterator<Item = (World, Shape)> {
 const INSIDE: Vec3 = Vec3::new(0.01, -0.03, 0.02);
 
 #[test]
-fn a_ray_that_starts_inside() {
+fn ray_that_starts_inside_hits_at_fraction_zero() {
     for (world, shape) in each_shape() {
         for way in [Vec3::X, Vec3::NEG_Y, Vec3::Y * 100.0, Vec3::new(1.0, 2.0, 3.0)] {
             let hit = world.query().first(&Ray { origin: INSIDE, direction: way }).expect("it starts inside");
@@ -36,7 +36,7 @@ fn a_ray_that_starts_inside() {
 }
 
 #[test]
-fn a_ray_that_starts_inside_and_goes_nowhere() {
+fn zero_length_ray_that_starts_inside_hits_the_shape() {
     for (world, shape) in each_shape() {
         let hit =
             world.query().first(&Ray { origin: INSIDE, direction: Vec3::ZERO }).expect("it starts inside");

@@ -26,7 +26,7 @@ fn world_of(shape: Shape, at: &Transform) -> World {
 /// Queries from outside give the same results for a closed mesh as for the box with the same surface; rays from inside
 /// do not hit the mesh.
 #[test]
-fn a_closed_mesh_answers_as_a_box_does() {
+fn queries_of_a_closed_mesh_equal_those_of_a_box() {
     let mut random = Random::new(411);
     let (mut hits, mut casts) = (0, 0);
     for case in 0..cases(20_000) {
