@@ -25,7 +25,7 @@ pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
 
-    // All of the setup.
+    // The complete setup.
     let def = Arc::new(sinew::mannequin::character());
     let mut puppet = Character::spawn(&mut world, &def, Transform::IDENTITY);
     puppet.set_preset(&mut world, Preset::Powered);
@@ -35,13 +35,13 @@ pub fn main() {
     puppet.hit(&mut world, chest, Vec3::X * 40.0);
     let pushed = walk(&mut world, &mut puppet, 2.0);
     let aside = puppet.world_from_character().translation.x;
-    println!("its chest sways by {calm:.2} m, pushed by {pushed:.2} m; it steps {aside:.2} m aside");
+    println!("the chest sways by {calm:.2} m, pushed by {pushed:.2} m; it steps {aside:.2} m aside");
     assert!(puppet.state() == State::Powered && pushed > calm && aside > 0.1);
 
     puppet.hit(&mut world, chest, Vec3::X * 300.0);
     walk(&mut world, &mut puppet, 1.5);
     assert_eq!(puppet.state(), State::Limp);
     walk(&mut world, &mut puppet, 10.0);
-    assert_eq!(puppet.state(), State::Animated, "it is up again");
+    assert_eq!(puppet.state(), State::Animated, "the ragdoll has got up");
     assert_eq!(puppet.bodies().len(), def.ragdoll.bodies.len());
 }

@@ -38,6 +38,6 @@ pub fn main() {
     let mut rest = seen.iter();
     assert!(due.iter().all(|state| rest.any(|one| one == state)), "{seen:?}");
     println!("its head moved by at most {farthest:.2} m in a step");
-    assert!(farthest < 0.2, "12 m/s: it falls, it does not jump");
-    assert!(hero.world_from_character().translation.z > 3.0, "it walked on");
+    assert!(farthest < 0.2, "the head moves at less than 12 m/s, so the pose does not jump");
+    assert!(hero.world_from_character().translation.z > 3.0, "the character walked on");
 }

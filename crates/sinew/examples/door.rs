@@ -40,7 +40,7 @@ pub fn main() {
     assert!(run(&mut world, 1.0).is_empty() && angle(&world, hinge).abs() < 0.1, "the latch holds");
     let mut broken = Vec::new();
     for _ in 0..4 {
-        world.apply_force(door, Vec3::Z * -900.0, handle); // of the next step alone
+        world.apply_force(door, Vec3::Z * -900.0, handle); // acts in the next step only
         broken.extend(run(&mut world, 1.1 / 60.0));
     }
     assert_eq!(broken, [latch], "a kick breaks it");

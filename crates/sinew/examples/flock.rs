@@ -180,7 +180,7 @@ pub fn main() {
     println!("{BIRDS} birds: order {hatched:.2} when hatched, {:.2} after 15 s", order(&world));
     println!("{:.1} mm out at most, {apart:.3} m apart at least", outside * 1e3);
     assert!(hatched < 0.4 && order(&world) > 0.8, "a swarm has become a flock");
-    assert!(outside < 1e-3, "nobody has left");
+    assert!(outside < 1e-3, "no bird is outside the aviary");
     assert!(apart > 0.2 - 0.01, "balls do not pass through each other");
 
     let after = world.hash();

@@ -16,6 +16,6 @@ pub fn main() {
             println!("{:.2} s: {height:.3} m, {:.2} m/s", world.time(), world.velocity(crate_).linear.y);
         }
     }
-    assert!((world.transform(crate_).translation.y - 0.5).abs() < 0.01, "it lies on the ground");
-    assert!(!world.is_awake(crate_), "and sleeps");
+    assert!((world.transform(crate_).translation.y - 0.5).abs() < 0.01, "the box lies on the ground");
+    assert!(!world.is_awake(crate_), "the box sleeps");
 }

@@ -53,5 +53,5 @@ pub fn main() {
     go(&mut world, &mut player, Vec3::X * 3.0, 1.5);
     assert!(feet(&player).y.abs() < 0.01 && feet(&player).x > 4.0, "it jumped off: {}", feet(&player));
     player.despawn(&mut world);
-    assert_eq!(world.body_ids().count(), 4, "nothing of it is left");
+    assert_eq!(world.body_ids().count(), 4, "the player's bodies are removed");
 }

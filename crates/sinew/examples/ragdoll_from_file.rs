@@ -36,7 +36,7 @@ pub fn main() {
     let before = top(&world);
     (0..300).for_each(|_| world.step());
     println!("it fell from {before:.2} m to {:.2} m", top(&world));
-    assert!(top(&world) < 0.5 * before, "it lies");
+    assert!(top(&world) < 0.5 * before, "the ragdoll lies on the ground");
     let gap = ragdoll.joints.iter().fold(0.0, |most, &id| f32::max(most, world.joint_gap(id)));
-    assert!(gap < 1e-3, "and holds together: {gap} m");
+    assert!(gap < 1e-3, "the joints hold: gap {gap} m");
 }

@@ -36,6 +36,6 @@ pub fn main() {
     let (hook, load) = (world.transform(hook).translation, world.transform(load).translation);
     let end = world.particles(rope).positions()[last as usize];
     println!("the hook is at {hook:.2}, the load at {load:.2}, the rope ends at {end:.2}");
-    assert!((hook.x - 4.8).abs() < 0.01 && (load - hook).length() < 2.25, "it came along");
-    assert!((end - load).length() < 0.16, "on its rope");
+    assert!((hook.x - 4.8).abs() < 0.01 && (load - hook).length() < 2.25, "the load follows the hook");
+    assert!((end - load).length() < 0.16, "the load stays on its rope");
 }

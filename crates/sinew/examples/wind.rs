@@ -32,8 +32,8 @@ pub fn main() {
     run(&mut world, 12.0);
     let height = |id| world.transform(id).translation.y;
     println!("the cork floats at {:.2} m, the stone lies at {:.2} m", height(cork), height(stone));
-    assert!((height(cork) - 0.12).abs() < 0.03, "a fifth of it is under water");
-    assert!(height(stone) < -2.85, "it sank");
+    assert!((height(cork) - 0.12).abs() < 0.03, "a fifth of the cork is under water");
+    assert!(height(stone) < -2.85, "the stone sank");
 
     let center = world.transform(cork).translation - Vec3::Y * 0.5;
     world.explode(&Explosion::new(center, 3.0, 200.0));
