@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quantiles_are_those_of_the_sorted_values() {
+    fn quantiles_equal_entries_of_the_sorted_values() {
         let values: Vec<f64> = (1..=100).rev().map(f64::from).collect();
         assert_eq!(quantile(&values, 0.0), 1.0);
         assert_eq!(quantile(&values, 0.5), 50.0);

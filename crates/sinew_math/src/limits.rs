@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn gradients_are_those_of_the_slack() {
+    fn limit_gradients_match_differences_of_the_slack() {
         let limit = SwingTwistLimit {
             swing_y: Range::degrees(-75.0, 60.0),
             swing_z: Range::degrees(-30.0, 40.0),

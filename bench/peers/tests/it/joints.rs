@@ -169,7 +169,7 @@ fn mass_and_inertia_equal_the_given_ones() {
 }
 
 #[test]
-fn an_oblique_centre_of_mass_is_as_defined() {
+fn off_axis_centre_of_mass_matches_its_definition() {
     let center = Vec3::new(0.2, 0.1, 0.0);
     let inertia = Sym3 { diagonal: Vec3::new(1.0, 2.0, 2.5), off: Vec3::new(0.0, 0.0, -0.3) };
     let def = BodyDef {

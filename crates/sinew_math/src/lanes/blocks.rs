@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn records_come_back_and_the_tail_repeats_one() {
+    fn stored_records_are_returned_and_padding_repeats_one() {
         let records: Vec<[f32; 3]> = (0..19).map(|i| [i as f32, -(i as f32), 0.5]).collect();
         let mut blocks: Blocks<3> = records.iter().copied().collect();
         assert_eq!((blocks.len(), blocks.blocks().len()), (19, 3));

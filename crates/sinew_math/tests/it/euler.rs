@@ -149,7 +149,7 @@ fn lock_is_reported() {
 }
 
 #[test]
-fn small_turns_keep_their_digits() {
+fn small_rotations_keep_full_precision() {
     for order in EulerOrder::ALL.into_iter().filter(|order| !order.is_proper()) {
         let angles = [3e-9, -2e-12, 5e-10];
         for convention in [order.intrinsic(), order.extrinsic()] {
