@@ -33,7 +33,7 @@ impl ContactRule {
     /// Checks that the numbers of the rule are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// Names the problem, in lower case.
+    /// Returns a phrase that names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         match self {
             Self::OneWay(one_way) => one_way.check(),

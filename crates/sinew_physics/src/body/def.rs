@@ -116,33 +116,33 @@ impl WorldDef {
     /// Checks that the numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// Names the problem, in lower case.
+    /// Returns a phrase that names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         // The comparison is false for NaN.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         if self.step_nanoseconds == 0 || self.substeps == 0 {
-            return Err(DefError::new("a step takes time and has substeps"));
+            return Err(DefError::new("a step must take time and have at least one substep"));
         }
         if self.step_nanoseconds > LONGEST_STEP || self.substeps > MOST_SUBSTEPS {
-            return Err(DefError::new("a step is no longer than 30 years and has at most 1,024 substeps"));
+            return Err(DefError::new("a step must last at most 30 years and have at most 1,024 substeps"));
         }
         if self.catch_up_steps == 0 {
-            return Err(DefError::new("an update may take a step"));
+            return Err(DefError::new("the number of catch-up steps must be at least 1"));
         }
         if !self.gravity.is_finite() {
-            return Err(DefError::new("gravity is finite"));
+            return Err(DefError::new("gravity must be finite"));
         }
         if !(positive(self.max_speed) && positive(self.max_turn)) {
-            return Err(DefError::new("the speed limits are positive and finite"));
+            return Err(DefError::new("the speed limits must be positive and finite"));
         }
         if !(0.0..f32::INFINITY).contains(&self.hit_speed) {
-            return Err(DefError::new("the speed of a hit is not negative, and finite"));
+            return Err(DefError::new("the speed of a hit must be finite and not negative"));
         }
         let SleepThresholds { time, distance, angle, speed, spin } = self.sleep_thresholds;
         if !((0.0..f32::INFINITY).contains(&time) && [distance, angle, speed, spin].into_iter().all(positive))
         {
             return Err(DefError::new(
-                "what counts as rest takes no negative time and is positive and finite",
+                "sleep thresholds must be positive and finite, and their time not negative",
             ));
         }
         Ok(())

@@ -47,7 +47,7 @@ impl Material {
     /// Checks that the numbers of the material are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// Names the problem, in lower case.
+    /// Returns a phrase that names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         // The comparison is false for NaN.
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);

@@ -155,19 +155,19 @@ const SMALLEST_MOMENT: f32 = 1e-3;
 fn check(def: &BodyDef) {
     assert!(
         def.position.is_finite() && def.rotation.is_finite(),
-        "a body's pose is finite, not {:?} and {:?}",
+        "a body's pose must be finite, not {:?} and {:?}",
         def.position,
         def.rotation
     );
     assert!(
         def.linear_velocity.is_finite() && def.angular_velocity.is_finite(),
-        "a body's velocity is finite, not {:?} and {:?}",
+        "a body's velocity must be finite, not {:?} and {:?}",
         def.linear_velocity,
         def.angular_velocity
     );
     assert!(
         def.linear_damping.is_finite() && def.angular_damping.is_finite() && def.gravity_scale.is_finite(),
-        "a body's damping and gravity scale are finite, not {} and {} and {}",
+        "a body's damping and gravity scale must be finite, not {} and {} and {}",
         def.linear_damping,
         def.angular_damping,
         def.gravity_scale
@@ -176,7 +176,7 @@ fn check(def: &BodyDef) {
         let finite = mass.is_finite() && center.is_finite() && inertia.is_finite();
         assert!(
             finite,
-            "a body's mass, centre and inertia are finite, not {mass} and {center:?} and {inertia:?}"
+            "a body's mass, centre and inertia must be finite, not {mass} and {center:?} and {inertia:?}"
         );
     }
     for shape in &def.shapes {

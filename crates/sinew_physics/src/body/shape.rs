@@ -88,7 +88,7 @@ impl ShapeDef {
     /// Checks that the numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// Names the problem, in lower case.
+    /// Returns a phrase that names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         self.shape.check()?;
         self.material.check()?;

@@ -346,7 +346,7 @@ impl JointDef {
     pub(crate) fn check(&self) {
         assert!(
             self.frame_a.is_finite() && self.frame_b.is_finite(),
-            "a joint's frames are finite, not {:?} and {:?}",
+            "a joint's frames must be finite, not {:?} and {:?}",
             self.frame_a,
             self.frame_b
         );

@@ -63,14 +63,14 @@ impl World {
     /// Sets a mover's walking velocity, m/s, relative to the ground; its vertical component has no effect.
     #[track_caller]
     pub fn set_mover_walk(&mut self, id: MoverId, velocity: Vec3) {
-        assert!(velocity.is_finite(), "a velocity is finite, not {velocity:?} ({id:?})");
+        assert!(velocity.is_finite(), "a velocity must be finite, not {velocity:?} ({id:?})");
         self.expect_mover(id).walk = velocity;
     }
 
     /// Throws a mover: it leaves the ground with this world velocity, m/s.
     #[track_caller]
     pub fn set_mover_velocity(&mut self, id: MoverId, velocity: Vec3) {
-        assert!(velocity.is_finite(), "a velocity is finite, not {velocity:?} ({id:?})");
+        assert!(velocity.is_finite(), "a velocity must be finite, not {velocity:?} ({id:?})");
         let mover = self.expect_mover(id);
         mover.ground = None;
         mover.velocity = velocity;
@@ -90,7 +90,7 @@ impl World {
     /// Teleports a mover's feet to a position, at rest, without a sweep.
     #[track_caller]
     pub fn set_mover_position(&mut self, id: MoverId, position: Vec3) {
-        assert!(position.is_finite(), "a mover's position is finite, not {position:?} ({id:?})");
+        assert!(position.is_finite(), "a mover's position must be finite, not {position:?} ({id:?})");
         let mover = self.expect_mover(id);
         (mover.position, mover.previous) = (position, position);
         (mover.ground, mover.velocity) = (None, Vec3::ZERO);

@@ -24,7 +24,7 @@ impl GroupDef {
     /// Checks that all numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// Names the problem, in lower case.
+    /// Returns a phrase that names the problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         let count = self.particles.len();
         self.particles.iter().try_for_each(ParticleDef::check)?;

@@ -483,7 +483,7 @@ impl ParticleGroup {
     /// # Panics
     /// If the particle does not exist, or the impulse or the result is not finite.
     pub fn apply_impulse(&mut self, particle: u32, impulse: Vec3) {
-        assert!(impulse.is_finite(), "an impulse is finite, not {impulse:?}");
+        assert!(impulse.is_finite(), "an impulse must be finite, not {impulse:?}");
         let i = particle as usize;
         let velocity = self.velocities[i] + impulse / self.masses[i];
         assert!(velocity.is_finite(), "an impulse makes a finite velocity, not {velocity:?}");
@@ -496,7 +496,7 @@ impl ParticleGroup {
     /// # Panics
     /// If the particle does not exist, or the velocity is not finite.
     pub fn set_velocity(&mut self, particle: u32, velocity: Vec3) {
-        assert!(velocity.is_finite(), "a velocity is finite, not {velocity:?}");
+        assert!(velocity.is_finite(), "a velocity must be finite, not {velocity:?}");
         self.velocities[particle as usize] = velocity;
         self.wake();
     }
@@ -506,7 +506,7 @@ impl ParticleGroup {
     /// # Panics
     /// If the particle does not exist, or the position is not finite.
     pub fn set_position(&mut self, particle: u32, position: Vec3) {
-        assert!(position.is_finite(), "a position is finite, not {position:?}");
+        assert!(position.is_finite(), "a position must be finite, not {position:?}");
         self.positions[particle as usize] = position;
         self.previous[particle as usize] = position;
         self.wake();
@@ -520,7 +520,7 @@ impl ParticleGroup {
         let velocity = by / h;
         assert!(
             by.is_finite() && h.is_finite() && velocity.is_finite(),
-            "a particle's way is finite, not {by:?} and {h:?} and {velocity:?}"
+            "a particle's way must be finite, not {by:?} and {h:?} and {velocity:?}"
         );
         self.positions[particle as usize] += by;
         self.velocities[particle as usize] += velocity;
@@ -532,7 +532,7 @@ impl ParticleGroup {
     /// # Panics
     /// If the attachment does not exist or is to a body, or the position is not finite.
     pub fn move_pin(&mut self, index: usize, to: Vec3) {
-        assert!(to.is_finite(), "a place is finite, not {to:?}");
+        assert!(to.is_finite(), "a place must be finite, not {to:?}");
         let AttachmentTarget::World(place) = &mut self.attachments[index].target else {
             panic!("attachment {index} is to a place in the world");
         };

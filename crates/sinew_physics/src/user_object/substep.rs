@@ -160,7 +160,7 @@ impl<'a> Substep<'a> {
     fn at(&self, id: BodyId, force: Vec3, point: Vec3) -> Vec6 {
         assert!(
             force.is_finite() && point.is_finite(),
-            "what is applied to a body is finite, not {force:?} and {point:?} ({id:?})"
+            "what is applied to a body must be finite, not {force:?} and {point:?} ({id:?})"
         );
         join(force, (point - self.center_of_mass(id)).cross(force))
     }
@@ -207,7 +207,7 @@ impl Forces<'_> {
 
     /// Applies a torque (N·m) for this substep.
     pub fn apply_torque(&mut self, id: BodyId, torque: Vec3) {
-        assert!(torque.is_finite(), "a torque is finite, not {torque:?} ({id:?})");
+        assert!(torque.is_finite(), "a torque must be finite, not {torque:?} ({id:?})");
         self.add(id, &join(Vec3::ZERO, torque));
     }
 

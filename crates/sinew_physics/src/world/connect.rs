@@ -221,6 +221,6 @@ impl World {
 
 #[track_caller]
 fn finite(v: Vec3) -> Vec3 {
-    assert!(v.is_finite(), "a joint's anchor and axis are finite, not {v:?}");
+    assert!(v.is_finite(), "a joint's anchor and axis must be finite, not {v:?}");
     v
 }

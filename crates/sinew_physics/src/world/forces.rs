@@ -14,7 +14,7 @@ impl World {
     pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
         assert!(
             impulse.is_finite() && point.is_finite(),
-            "an impulse is finite, not {impulse:?} and {point:?} ({id:?})"
+            "an impulse must be finite, not {impulse:?} and {point:?} ({id:?})"
         );
         self.wake_body(id.index);
         let dt = self.def.dt();
@@ -37,7 +37,7 @@ impl World {
     /// Applies an angular impulse (N·m·s): `Δω = I⁻¹ L`.
     #[track_caller]
     pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Vec3) {
-        assert!(impulse.is_finite(), "an impulse is finite, not {impulse:?} ({id:?})");
+        assert!(impulse.is_finite(), "an impulse must be finite, not {impulse:?} ({id:?})");
         self.wake_body(id.index);
         let dt = self.def.dt();
         let body = self.expect_mut(id);
@@ -53,7 +53,7 @@ impl World {
     pub fn apply_force(&mut self, id: BodyId, force: Vec3, point: Vec3) {
         assert!(
             force.is_finite() && point.is_finite(),
-            "a force is finite, not {force:?} and {point:?} ({id:?})"
+            "a force must be finite, not {force:?} and {point:?} ({id:?})"
         );
         let torque = (point - self.center_of_mass(id)).cross(force);
         self.apply_wrench(id, Wrench { force, torque });
@@ -62,14 +62,14 @@ impl World {
     /// Applies a force (N) at the centre of mass for the next step.
     #[track_caller]
     pub fn apply_force_at_center(&mut self, id: BodyId, force: Vec3) {
-        assert!(force.is_finite(), "a force is finite, not {force:?} ({id:?})");
+        assert!(force.is_finite(), "a force must be finite, not {force:?} ({id:?})");
         self.apply_wrench(id, Wrench { force, torque: Vec3::ZERO });
     }
 
     /// Applies a torque (N·m) for the next step.
     #[track_caller]
     pub fn apply_torque(&mut self, id: BodyId, torque: Vec3) {
-        assert!(torque.is_finite(), "a torque is finite, not {torque:?} ({id:?})");
+        assert!(torque.is_finite(), "a torque must be finite, not {torque:?} ({id:?})");
         self.apply_wrench(id, Wrench { force: Vec3::ZERO, torque });
     }
 
@@ -94,7 +94,7 @@ impl World {
     #[track_caller]
     #[doc(alias = "constant force")]
     pub fn add_force(&mut self, body: BodyId, def: &ForceDef) -> ForceId {
-        assert!(def.is_finite(), "a force is finite, not {def:?} ({body:?})");
+        assert!(def.is_finite(), "a force must be finite, not {def:?} ({body:?})");
         self.wake_body(body.index);
         let forces = &mut self.expect_mut(body).forces;
         let number = forces.next;
@@ -108,7 +108,7 @@ impl World {
     /// # Panics
     /// If a number is not finite, or the force does not exist.
     pub fn set_force(&mut self, id: ForceId, def: &ForceDef) {
-        assert!(def.is_finite(), "a force is finite, not {def:?} ({id:?})");
+        assert!(def.is_finite(), "a force must be finite, not {def:?} ({id:?})");
         self.wake_body(id.body().index);
         let forces = &mut self.expect_mut(id.body()).forces;
         let place = forces.place(id);
@@ -170,7 +170,7 @@ impl World {
         );
         assert!(
             velocity.is_finite() && point.is_finite(),
-            "a bullet's velocity and place are finite, not {velocity:?} and {point:?} ({id:?})"
+            "a bullet's velocity and place must be finite, not {velocity:?} and {point:?} ({id:?})"
         );
         let body = self.expect(id);
         let arm = point - body.center();

@@ -318,7 +318,10 @@ impl World {
     #[doc(alias = "teleport")]
     #[doc(alias = "set_position")]
     pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
-        assert!(world_from_body.is_finite(), "a body's pose is finite, not {world_from_body:?} ({id:?})");
+        assert!(
+            world_from_body.is_finite(),
+            "a body's pose must be finite, not {world_from_body:?} ({id:?})"
+        );
         self.expect_mut(id).set_world_from_body(world_from_body);
         self.mark_changed(id);
         // The contact impulses of the body do not apply at the new position.
@@ -351,7 +354,7 @@ impl World {
     pub fn set_velocity(&mut self, id: BodyId, velocity: Velocity) {
         assert!(
             velocity.linear.is_finite() && velocity.angular.is_finite(),
-            "a velocity is finite, not {velocity:?} ({id:?})"
+            "a velocity must be finite, not {velocity:?} ({id:?})"
         );
         let body = self.expect_mut(id);
         if body.kind == BodyKind::Static {

@@ -37,7 +37,10 @@ impl World {
     #[doc(alias = "kinematic target")]
     #[track_caller]
     pub fn move_to(&mut self, id: BodyId, world_from_body: Transform, seconds: f32) {
-        assert!(world_from_body.is_finite(), "a body's pose is finite, not {world_from_body:?} ({id:?})");
+        assert!(
+            world_from_body.is_finite(),
+            "a body's pose must be finite, not {world_from_body:?} ({id:?})"
+        );
         assert!(
             seconds > 0.0 && seconds < f32::INFINITY,
             "a time is positive and finite, not {seconds:?} ({id:?})"
@@ -52,7 +55,7 @@ impl World {
         };
         assert!(
             velocity.linear.is_finite() && velocity.angular.is_finite(),
-            "a velocity is finite, not {velocity:?} ({id:?})"
+            "a velocity must be finite, not {velocity:?} ({id:?})"
         );
         self.go_on(id, velocity);
     }

@@ -77,7 +77,7 @@ impl World {
     /// # Panics
     /// If the gravity is not finite.
     pub fn set_gravity(&mut self, gravity: Vec3) {
-        assert!(gravity.is_finite(), "gravity is finite, not {gravity:?}");
+        assert!(gravity.is_finite(), "gravity must be finite, not {gravity:?}");
         if gravity != core::mem::replace(&mut self.def.gravity, gravity) {
             for id in self.body_ids().collect::<Vec<_>>() {
                 self.wake_body(id.index);

@@ -33,7 +33,7 @@ impl World {
     pub fn set_mass(&mut self, id: BodyId, properties: MassProperties) {
         let finite =
             properties.mass.is_finite() && properties.center.is_finite() && properties.inertia.is_finite();
-        assert!(finite, "a body's mass, centre and inertia are finite, not {properties:?} ({id:?})");
+        assert!(finite, "a body's mass, centre and inertia must be finite, not {properties:?} ({id:?})");
         let (moments, body_from_principal) = principal_frame(&properties);
         expect_solid(properties.mass, moments);
         self.mark_changed(id);
@@ -97,7 +97,7 @@ impl World {
     /// If the damping is not finite.
     #[track_caller]
     pub fn set_linear_damping(&mut self, id: BodyId, damping: f32) {
-        assert!(damping.is_finite(), "a body's damping is finite, not {damping:?} ({id:?})");
+        assert!(damping.is_finite(), "a body's damping must be finite, not {damping:?} ({id:?})");
         self.expect_mut(id).linear_damping = damping;
     }
 
@@ -113,7 +113,7 @@ impl World {
     /// If the damping is not finite.
     #[track_caller]
     pub fn set_angular_damping(&mut self, id: BodyId, damping: f32) {
-        assert!(damping.is_finite(), "a body's damping is finite, not {damping:?} ({id:?})");
+        assert!(damping.is_finite(), "a body's damping must be finite, not {damping:?} ({id:?})");
         self.expect_mut(id).angular_damping = damping;
     }
 
@@ -130,7 +130,7 @@ impl World {
     /// If the factor is not finite.
     #[track_caller]
     pub fn set_gravity_scale(&mut self, id: BodyId, scale: f32) {
-        assert!(scale.is_finite(), "a body's gravity scale is finite, not {scale:?} ({id:?})");
+        assert!(scale.is_finite(), "a body's gravity scale must be finite, not {scale:?} ({id:?})");
         if core::mem::replace(&mut self.expect_mut(id).gravity_scale, scale) != scale {
             self.wake_body(id.index);
         }
