@@ -24,16 +24,16 @@ struct Peers {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Names of engines and scenes.
+    /// Lists the names of engines and scenes.
     List,
-    /// Version, flags and settings of the engines in this binary.
+    /// Prints version, flags and settings of the engines in this binary.
     Versions,
     /// Time of each stage of Sinew's step on a scene, µs, and counts of its work.
     Trace {
         /// Name of a scene in `peers list` or `sinew scenes`.
         #[arg(long)]
         scene: String,
-        /// After the warm-up, instead of the rest of the scene.
+        /// Number of steps after the warm-up, instead of the rest of the scene.
         #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
         steps: Option<u32>,
         /// Steps before the measurement, instead of a third of the scene.
@@ -43,7 +43,8 @@ enum Command {
         #[arg(long, default_value_t = 1)]
         threads: usize,
     },
-    /// Random walks of our mover and of Rapier's controller on the same terrains: depths, sticks, steps climbed, µs per move.
+    /// Runs random walks of Sinew's mover and Rapier's controller on the same terrains; reports depths, sticks, steps
+    /// climbed, and µs per move.
     Walks {
         /// Number of walks on each terrain.
         #[arg(long, default_value_t = 200)]
@@ -66,7 +67,7 @@ enum Command {
         /// Name in `peers list`.
         #[arg(long, value_parser = parse_scene)]
         scene: &'static Scene,
-        /// Steps before it.
+        /// Number of steps before the state is written.
         #[arg(long)]
         steps: u32,
         /// As for `run`.
@@ -107,7 +108,7 @@ enum Command {
         /// Seed for moving bodies by up to 0.1 mm from the scene's start.
         #[arg(long)]
         start: Option<u64>,
-        /// Run it again, untimed, and measure the quality.
+        /// Repeats the run untimed, and measures its quality.
         #[arg(long)]
         quality: bool,
         /// Work per step of scenes of bodies: fast, balanced or exact for Sinew, a number of substeps for a peer.

@@ -17,7 +17,7 @@ const CHARACTERS_EVERY: usize = 37;
 /// Measurement of the quality by a second run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judging {
-    /// Only time is measured.
+    /// Measures only the time.
     Off,
     /// A second run, which is not timed, is measured after every step.
     On,

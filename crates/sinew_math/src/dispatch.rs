@@ -4,7 +4,7 @@
 //! use sinew_math::dispatch::{self, Kernel};
 //! use sinew_math::lanes::{Lanes, Real, WIDTH};
 //!
-//! /// The roots of many numbers.
+//! /// Computes the square roots of many numbers.
 //! struct Roots<'a>(&'a mut [[f32; WIDTH]]);
 //!
 //! impl Kernel for Roots<'_> {

@@ -32,7 +32,7 @@ pub struct Scene {
 /// Sensitivity of a scene's run to a small change of its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Course {
-    /// The run changes little: one run gives the results.
+    /// The runs of the scene differ little: one run suffices.
     Steady,
     /// The run differs: results are those of several starts.
     Chaotic,

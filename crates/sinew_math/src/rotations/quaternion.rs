@@ -31,9 +31,9 @@ use core::ops::{Add, Mul, Neg, Sub};
 /// converts from the first to the second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quaternion {
-    /// The number, Hamilton's *scalar part*.
+    /// The scalar part `w`, as named by Hamilton.
     pub scalar: f32,
-    /// The *vector part*.
+    /// The vector part `x i + y j + z k`.
     pub vector: Vec3,
 }
 
@@ -77,7 +77,8 @@ impl Quaternion {
         trig::atan2(self.vector.length(), self.scalar)
     }
 
-    /// Unit axis of the rotation. `None` for a number: a positive one does not rotate, a negative one reverses every
+    /// Unit axis of the rotation. `None` if the vector part is zero: a positive number does not rotate, a negative one
+    /// reverses every vector.
     /// vector.
     pub fn axis(self) -> Option<Vec3> {
         direction(self.vector)
