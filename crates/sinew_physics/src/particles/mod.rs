@@ -739,7 +739,7 @@ impl Part {
 mod tests {
     use super::*;
 
-    /// Regression from random test 48: a non-finite particle's contact impulse was applied to the particle beside it.
+    /// Regression from random test 48: a particle with a finite position kept its non-finite contact impulse.
     #[test]
     fn non_finite_contact_impulses_are_reset_to_zero() {
         let particle = ParticleDef { position: Vec3::ZERO, velocity: Vec3::ZERO, mass: 0.1, radius: 0.01 };
