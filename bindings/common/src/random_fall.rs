@@ -117,7 +117,8 @@ mod tests {
     fn falls_start_in_their_pose_end_on_their_ground_and_depend_only_on_the_seed() {
         let file = embedded();
         let (ragdoll, _) = file.build(&crate::Wishes::default()).expect("the ragdoll can be built");
-        let character = file.character(&ragdoll, &crate::Motions::default()).expect("the character has motions");
+        let character =
+            file.character(&ragdoll, &crate::Motions::default()).expect("the character has motions");
         let options = FallOptions { seconds: 2.0, ..FallOptions::default() };
         let mut hashes = Vec::new();
         for seed in 0..6 {

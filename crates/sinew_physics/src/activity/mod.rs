@@ -68,6 +68,13 @@ impl Activity {
         &self.kinematic
     }
 
+    /// Limits each velocity component of kinematic bodies to `most`, m/s or rad/s.
+    pub fn bound_kinematic(&self, bodies: &mut Arena<Body>, most: f32) {
+        for &index in &self.kinematic {
+            bodies.at_mut(index).velocity.bound(most);
+        }
+    }
+
     /// The other bodies of a sleeping body's island.
     #[cfg(test)]
     fn asleep_with(&self, index: u32) -> impl Iterator<Item = u32> {

@@ -34,9 +34,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
 
     stage(Stage::Pairs, &mut || {
-        for &index in activity.kinematic() {
-            bodies.at_mut(index).velocity.bound(FASTEST_KINEMATIC);
-        }
+        activity.bound_kinematic(bodies, FASTEST_KINEMATIC);
         activity.wake_struck(bodies, groups, &broad.proxies, def);
         activity.wake_groups(bodies, groups, &broad.proxies, objects.let_sleep(), def);
         broad.blows.find(bodies, joints, activity);
