@@ -53,6 +53,11 @@ impl Velocity {
         }
     }
 
+    /// True if a component has at least the size `most`, m/s or rad/s.
+    pub(crate) fn reaches(&self, most: f32) -> bool {
+        self.linear.as_ref().iter().chain(self.angular.as_ref()).any(|component| component.abs() >= most)
+    }
+
     /// Velocity of a point at `arm` from the centre of mass, m/s.
     pub fn at(self, arm: Vec3) -> Vec3 {
         self.linear + self.angular.cross(arm)

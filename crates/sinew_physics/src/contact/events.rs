@@ -44,7 +44,7 @@ pub struct Events {
     pub quarantined: Vec<BodyId>,
     /// Bodies that were slowed to [`WorldDef::max_speed`](crate::WorldDef::max_speed) or
     /// [`WorldDef::max_turn`](crate::WorldDef::max_turn), by index: a force or an impulse was too large, or a fall too
-    /// long.
+    /// long. Also kinematic bodies at 1e6 m/s or 1e6 rad/s, the largest components of their velocity.
     pub limited: Vec<BodyId>,
     /// Groups with particles whose state became non-finite: these particles stop at their positions before the step.
     pub rolled_back: Vec<GroupId>,

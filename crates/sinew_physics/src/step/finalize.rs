@@ -8,6 +8,7 @@ use crate::contact::events::{Events, Push};
 use crate::context::StepContext;
 use crate::solver::SolvedBody;
 use crate::step::islands::Islands;
+use crate::step::tuning::FASTEST_KINEMATIC;
 use sinew_math::{Vec3, max};
 
 /// `finalize`: writes poses and velocities. A body with a non-finite state keeps its old pose, stops and is
@@ -59,6 +60,9 @@ pub(crate) fn finalize(
         if force != Vec3::ZERO || torque != Vec3::ZERO {
             let (impulse, angular_impulse) = (force * context.dt, torque * context.dt);
             events.pushed.push(Push { body: id, impulse, angular_impulse });
+        }
+        if body.velocity.reaches(FASTEST_KINEMATIC) {
+            events.limited.push(id);
         }
         let carried = body.carried(context.h, context.substeps);
         if (carried * body.principal_from_body).is_finite() {

@@ -347,7 +347,7 @@ impl World {
     }
 
     /// Sets the velocity of a dynamic or kinematic body; the body wakes. No effect on a static body. The step limits the
-    /// components of a kinematic body's velocity to 1e6 m/s and 1e6 rad/s.
+    /// components of a kinematic body's velocity to 1e6 m/s and 1e6 rad/s, and reports such bodies in `Events::limited`.
     #[track_caller]
     #[doc(alias = "set_linvel")]
     #[doc(alias = "set_angvel")]
