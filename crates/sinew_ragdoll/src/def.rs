@@ -4,7 +4,7 @@
 //! # let rig = sinew::mannequin::mannequin().rig;
 //! # let analysis = sinew_anim::analyze(&rig)?;
 //! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
-//! let head = def.bodies.iter().find(|body| body.role == "head").expect("it has one");
+//! let head = def.bodies.iter().find(|body| body.role == "head").expect("the body exists");
 //! assert!(head.character_from_body.translation.y > 0.8 * def.height);
 //! assert!((3.0..8.0).contains(&head.mass.mass), "{} kg", head.mass.mass);
 //! let sum: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();

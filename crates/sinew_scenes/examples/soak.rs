@@ -138,12 +138,12 @@ fn processor_seconds() -> f64 {
 }
 
 fn started(part: &Part, round: u64) -> Instance {
-    let scene = find(part.scene).expect("the registry has it");
+    let scene = find(part.scene).expect("the scene is registered");
     let mut settings = scene.settings();
     for setting in part.settings {
         // Skip the round numbers that the setting does not allow.
         let number = if part.scene == "crowd" { 50 + round % 40 } else { round };
-        settings.assign(&setting.replace('#', &number.to_string())).expect("it is in range");
+        settings.assign(&setting.replace('#', &number.to_string())).expect("the value is in range");
     }
     scene.start(&settings)
 }

@@ -65,7 +65,7 @@ impl Demo {
 pub(crate) fn walking_mannequin() -> (CharacterDef, f32) {
     let Mannequin { rig, clips, motions } = mannequin();
     let analysis = analyze(&rig).expect("the mannequin has a skin");
-    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig can be built");
     let mut character = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
     let speed = motions.walk_speed;
     let motions = MotionSet {

@@ -168,13 +168,13 @@ pub fn dressed(garments: &[&Chains], adjust: impl Fn(&mut Garment)) -> Character
     let bare = crate::mannequin::mannequin().rig;
     let (ragdoll, _) =
         build(&bare, &analyze(&bare).expect("the mannequin has a skin"), &BuildOptions::default())
-            .expect("and bones");
+            .expect("the rig can be built");
     let rig = dressed_rig(garments);
     let analysis = analyze(&rig).expect("the mannequin has a skin");
     let mut worn = guess_garments(&rig);
     worn.iter_mut().for_each(adjust);
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
-    def.set_motions(crate::mannequin::character().motions().clone()).expect("its clips can be played");
+    def.set_motions(crate::mannequin::character().motions().clone()).expect("the file's clips can be played");
     def.set_garments(&worn);
     def
 }

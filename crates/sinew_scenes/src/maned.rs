@@ -59,7 +59,7 @@ const THIN: f32 = 0.02;
 /// Never panics, because the mannequin has a head.
 pub fn maned_rig(settings: &SpringBone) -> Rig {
     let mut rig = crate::mannequin::mannequin().rig;
-    let head = rig.joints.iter().position(|joint| joint.name == "head").expect("it has a head");
+    let head = rig.joints.iter().position(|joint| joint.name == "head").expect("the character has a head");
     let shape = ColliderShape::Sphere { offset: Vec3::Y * 0.1, radius: 0.09, keeps: Side::Outside };
     let colliders = vec![SpringCollider { joint: head, shape }];
     let chains = STRANDS.iter().map(|strand| grow(&mut rig, head, strand, settings)).collect();
@@ -113,8 +113,8 @@ fn spindle(way: Vec3) -> Primitive {
 pub fn maned(settings: &SpringBone) -> CharacterDef {
     let rig = maned_rig(settings);
     let analysis = analyze(&rig).expect("the mannequin has a skin");
-    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig can be built");
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
-    def.set_motions(crate::mannequin::character().motions().clone()).expect("its clips can be played");
+    def.set_motions(crate::mannequin::character().motions().clone()).expect("the file's clips can be played");
     def
 }

@@ -23,7 +23,7 @@ const BUCKLE: [f32; 2] = [0.93, 0.012];
 pub fn skirted_rig(cells: [usize; 2]) -> Rig {
     let mut rig = crate::mannequin::mannequin().rig;
     let joint_of =
-        |name: &str| rig.joints.iter().position(|joint| joint.name == name).expect("it has that joint");
+        |name: &str| rig.joints.iter().position(|joint| joint.name == name).expect("the rig has this joint");
     let slot_of = |name: &str| {
         let joint = joint_of(name);
         rig.skins[0].joints.iter().position(|&at| at == joint).expect("its skin has that joint") as u16
@@ -84,7 +84,7 @@ pub fn skirted_rig(cells: [usize; 2]) -> Rig {
 /// If the rig has no such skirt.
 pub fn lay_skirt(rig: &mut Rig, most_particles: usize, spacing: f32) -> Result<usize, SheetError> {
     let bind_model = analyze(rig).expect("the mannequin has a skin").bind_model;
-    let part = MeshPart::named(rig, NAME).expect("it has a skirt");
+    let part = MeshPart::named(rig, NAME).expect("the rig has a skirt");
     let first_source = rig.joints.len();
     let options = SheetOptions {
         bind_model: &bind_model,
@@ -105,7 +105,7 @@ pub fn skirted(adjust: impl Fn(&mut Garment)) -> CharacterDef {
     let bare = crate::mannequin::mannequin().rig;
     let (ragdoll, _) =
         build(&bare, &analyze(&bare).expect("the mannequin has a skin"), &BuildOptions::default())
-            .expect("and bones");
+            .expect("the rig can be built");
     let mut rig = skirted_rig(CELLS);
     let sheet =
         lay_skirt(&mut rig, MOST_PARTICLES, Garment::default().spacing).expect("the skirt can be cloth");
@@ -113,7 +113,7 @@ pub fn skirted(adjust: impl Fn(&mut Garment)) -> CharacterDef {
     adjust(&mut garment);
     let analysis = analyze(&rig).expect("the mannequin has a skin");
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
-    def.set_motions(crate::mannequin::character().motions().clone()).expect("its clips can be played");
+    def.set_motions(crate::mannequin::character().motions().clone()).expect("the file's clips can be played");
     def.set_garments(&[garment]);
     def
 }
@@ -123,5 +123,5 @@ pub fn skirted(adjust: impl Fn(&mut Garment)) -> CharacterDef {
 /// # Panics
 /// If the rig has no such joint.
 pub fn joint(rig: &Rig, name: &str) -> JointIdx {
-    rig.joints.iter().position(|joint| joint.name == name).expect("it has that joint")
+    rig.joints.iter().position(|joint| joint.name == name).expect("the rig has this joint")
 }

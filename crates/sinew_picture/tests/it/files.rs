@@ -34,14 +34,14 @@ fn a_still_png_and_webp_are_exact() {
     let png = encoded(PictureFormat::Png, core::slice::from_ref(image));
     let mut reader = png::Decoder::new(Cursor::new(png)).read_info().expect("PNG");
     assert!(reader.info().animation_control.is_none());
-    let mut pixels = vec![0; reader.output_buffer_size().expect("fits")];
+    let mut pixels = vec![0; reader.output_buffer_size().expect("the number fits")];
     reader.next_frame(&mut pixels).expect("pixels");
     assert!(pixels == rgb(image));
 
     let webp = encoded(PictureFormat::WebP, core::slice::from_ref(image));
     let mut decoder = image_webp::WebPDecoder::new(Cursor::new(webp)).expect("WebP");
     assert!(!decoder.is_animated() && decoder.dimensions() == (161, 91));
-    let mut pixels = vec![0; decoder.output_buffer_size().expect("fits")];
+    let mut pixels = vec![0; decoder.output_buffer_size().expect("the number fits")];
     decoder.read_image(&mut pixels).expect("pixels");
     assert!(pixels == rgb(image));
 }
@@ -54,7 +54,7 @@ fn an_apng_is_exact_once_put_together() {
     assert_eq!(reader.info().animation_control.map(|a| (a.num_frames, a.num_plays)), Some((5, 0)));
     let mut canvas = vec![0; 161 * 91 * 3];
     for (number, image) in images.iter().enumerate() {
-        let mut pixels = vec![0; reader.output_buffer_size().expect("fits")];
+        let mut pixels = vec![0; reader.output_buffer_size().expect("the number fits")];
         reader.next_frame(&mut pixels).expect("frame");
         let control = *reader.info().frame_control().expect("animated");
         assert_eq!((control.delay_num, u32::from(control.delay_den)), (1, FPS));
@@ -78,7 +78,7 @@ fn an_animated_webp_is_exact_and_keeps_time() {
     let channels = if decoder.has_alpha() { 4 } else { 3 };
     let mut milliseconds = 0;
     for (number, image) in images.iter().enumerate() {
-        let mut pixels = vec![0; decoder.output_buffer_size().expect("fits")];
+        let mut pixels = vec![0; decoder.output_buffer_size().expect("the number fits")];
         milliseconds += decoder.read_frame(&mut pixels).expect("frame");
         let shown: Vec<u8> = pixels.chunks_exact(channels).flat_map(|p| [p[0], p[1], p[2]]).collect();
         assert!(shown == rgb(image), "frame {number}");

@@ -173,7 +173,7 @@ fn pictures_show_what_the_library_does() {
             std::fs::create_dir_all(path.parent().expect("a folder")).expect("it can be made");
             std::fs::write(&path, &due).expect("it can be written");
         }
-        let is = std::fs::read(&path).expect("it is there");
+        let is = std::fs::read(&path).expect("the named item exists");
         assert_eq!(hash_bytes(&is), hash_bytes(&due), "{}: bless it, and look at it", path.display());
         assert!(due.len() < 100_000, "{} bytes", due.len());
     }

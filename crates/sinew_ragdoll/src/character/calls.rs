@@ -458,9 +458,9 @@ impl Character {
     /// let mut hero = Character::spawn(&mut world, &def, Transform::IDENTITY);
     /// let mut other = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::X * 0.5));
     /// other.go_limp(&mut world);
-    /// let wrist = other.bodies()[def.body_named("rightLowerArm").expect("it has one")];
+    /// let wrist = other.bodies()[def.body_named("rightLowerArm").expect("the body exists")];
     /// let grab = Grab { reach: 0.5, ..Grab::HAND };
-    /// let grip = hero.grab(&mut world, "leftHand", wrist, &grab).expect("it is in reach");
+    /// let grip = hero.grab(&mut world, "leftHand", wrist, &grab).expect("the point is in reach");
     /// for _ in 0..60 {
     ///     world.step();
     ///     hero.update(&mut world);

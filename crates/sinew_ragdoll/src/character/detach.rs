@@ -48,7 +48,7 @@ impl Physique {
         parts: &[usize],
         world: &mut World,
     ) -> (Vec<BodyId>, Vec<JointId>) {
-        let ragdoll = self.ragdoll.as_ref().expect("it has one");
+        let ragdoll = self.ragdoll.as_ref().expect("the body exists");
         self.drives.release_bodies(world, ragdoll, parts);
         cut_joint(world, ragdoll.joints[parts[0] - 1]);
         let joints: Vec<JointId> = parts[1..].iter().map(|&part| ragdoll.joints[part - 1]).collect();

@@ -22,7 +22,7 @@ const MAGIC: &[u8; 8] = b"sinew-g\x01";
 /// let def = Arc::new(sinew::mannequin::character());
 /// let mut puppet = Character::spawn(&mut world, &def, Transform::IDENTITY);
 /// puppet.go_limp(&mut world);
-/// let hand = puppet.bodies()[def.body_named("rightHand").expect("it has hands")];
+/// let hand = puppet.bodies()[def.body_named("rightHand").expect("the character has hands")];
 /// let at = world.center_of_mass(hand);
 /// let mut mouse = GrabPoint::take(&mut world, hand, at, &Grab::POINT).expect("the hand is there");
 /// mouse.set_target(at + Vec3::Y * 0.5);

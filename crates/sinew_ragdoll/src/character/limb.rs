@@ -149,7 +149,7 @@ impl Limb {
         for skin in &self.skin {
             let part = self.parts[skin.body];
             let to = if is_off(&part) { &mut off } else { &mut left };
-            let body = to.parts.iter().position(|&own| own == part).expect("it has that body");
+            let body = to.parts.iter().position(|&own| own == part).expect("the ragdoll has this body");
             to.skin.push(SkinJoint { body, ..*skin });
         }
         *self = left;

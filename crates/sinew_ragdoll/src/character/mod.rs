@@ -15,13 +15,13 @@
 //! world.add_body(&BodyDef::fixed(Shape::HalfSpace));
 //! let def = Arc::new(sinew::mannequin::character());
 //! let mut hero = Character::spawn(&mut world, &def, Transform::IDENTITY);
-//! hero.hit(&mut world, def.body_named("chest").expect("it has one"), Vec3::Z * -150.0);
+//! hero.hit(&mut world, def.body_named("chest").expect("the body exists"), Vec3::Z * -150.0);
 //! assert_eq!(hero.state(), State::Limp);
 //! for _ in 0..60 {
 //!     world.step();
 //!     hero.update(&mut world);
 //! }
-//! let chest = hero.bodies()[def.body_named("chest").expect("it has one")];
+//! let chest = hero.bodies()[def.body_named("chest").expect("the body exists")];
 //! assert!(world.center_of_mass(chest).y < 1.0, "it falls");
 //! ```
 

@@ -171,7 +171,7 @@ impl Physique {
 
     /// Computes the poses of the bodies of a ragdoll, in `scratch.after`; detached ones are at their rest position.
     pub fn poses(&self, def: &CharacterDef, world: &World, scratch: &mut Scratch) {
-        let ragdoll = self.ragdoll.as_ref().expect("it has bodies");
+        let ragdoll = self.ragdoll.as_ref().expect("the ragdoll has bodies");
         ragdoll.poses(world, &mut scratch.after);
         let bind = |body: usize| def.ragdoll.bodies[body].character_from_body;
         for &(body, _) in &self.lost {

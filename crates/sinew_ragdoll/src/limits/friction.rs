@@ -8,7 +8,7 @@
 //! let (def, _) = build(&rig, &analysis, &BuildOptions::default())?;
 //! let of = |role| {
 //!     let joint = def.joints.iter().find(|joint| def.bodies[joint.child].role == role);
-//!     joint.expect("it has one").friction_torque
+//!     joint.expect("the body exists").friction_torque
 //! };
 //! assert!(of("leftUpperLeg") > of("leftHand"), "N·m of a hip and of a wrist");
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -6,7 +6,7 @@
 //! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
 //! use sinew_physics::JointKind;
 //!
-//! let shin = def.bodies.iter().position(|body| body.role == "leftLowerLeg").expect("it has one");
+//! let shin = def.bodies.iter().position(|body| body.role == "leftLowerLeg").expect("the body exists");
 //! let knee = &def.joints[shin - 1]; // `joints[i].child == i + 1`
 //! let JointKind::Hinge { limit: Some(range) } = knee.kind else { panic!("a knee is a hinge") };
 //! let degrees = (range.hi - range.lo).to_degrees();

@@ -6,7 +6,7 @@
 //!
 //! // A tetrahedron whose corners are the origin and one metre along each axis.
 //! let (o, x, y, z) = (Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z);
-//! let volume = enclosed(&[[o, y, x], [o, x, z], [o, z, y], [x, y, z]]).expect("it is closed");
+//! let volume = enclosed(&[[o, y, x], [o, x, z], [o, z, y], [x, y, z]]).expect("the mesh is closed");
 //! assert!((volume - 1.0 / 6.0).abs() < 0.005, "{volume} m³");
 //! ```
 

@@ -170,7 +170,7 @@ mod tests {
             ..FallQuality::default()
         };
         for mass in [0.013, 3600.0, 24_000.0, 30_000.0] {
-            let doubt = Doubt::of(&of(mass)).expect("a doubt");
+            let doubt = Doubt::of(&of(mass)).expect("the mass is doubtful");
             assert_eq!((judge(&calm, &calm).0, judge_bake(&calm).0), (Verdict::Good, Verdict::Good));
             let drops = doubt.judge([calm, calm], |[drop, wall]| judge(drop, wall));
             let bake = doubt.judge([calm], |[fall]| judge_bake(fall));
@@ -192,7 +192,7 @@ mod tests {
         };
         let deep = |overlap: f32| FallQuality { nonadjacent_overlap_max_m: overlap, ..calm };
         let verdict = |mass: f32, drop: FallQuality| {
-            let doubt = Doubt::of(&of(mass)).expect("a doubt");
+            let doubt = Doubt::of(&of(mass)).expect("the mass is doubtful");
             doubt.judge([drop, calm], |[drop, wall]| judge(drop, wall)).0
         };
         assert_eq!(judge(&deep(0.042), &calm).0, Verdict::Bad);

@@ -10,7 +10,7 @@
 //! let round = BoneSettings { shape: Some(ShapeWish::Sphere), ..BoneSettings::default() };
 //! let settings = Settings { bones: vec![("head".into(), round)], ..Settings::default() };
 //! let (def, _) = build_with(&rig, &analysis, &BuildOptions::default(), &settings)?;
-//! let head = def.bodies.iter().find(|body| body.role == "head").expect("it has one");
+//! let head = def.bodies.iter().find(|body| body.role == "head").expect("the body exists");
 //! assert!(matches!(head.shape, sinew_physics::Shape::Sphere { .. }));
 //!
 //! let slip = Settings { bones: vec![("haed".into(), round)], ..Settings::default() };

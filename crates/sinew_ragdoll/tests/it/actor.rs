@@ -19,7 +19,7 @@ pub fn walker() -> CharacterDef {
 /// clip moves them.
 pub fn armed_walker() -> CharacterDef {
     let Mannequin { mut rig, clips, motions } = mannequin();
-    let hand = analyze(&rig).expect("a skin").joint_with(Role::Hand(Side::Right));
+    let hand = analyze(&rig).expect("the rig has a skin").joint_with(Role::Hand(Side::Right));
     let rest = LocalTransform {
         translation: Vec3::new(-1.48, -0.63, -0.05),
         rotation: Rotation::from_scaled_axis(Vec3::new(-1.1, -1.4, -1.1)),
@@ -34,7 +34,7 @@ pub fn armed_walker() -> CharacterDef {
 
 fn character(rig: Rig, clips: Vec<Clip>, motions: Motions) -> CharacterDef {
     let analysis = analyze(&rig).expect("the mannequin has a skin");
-    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("it has bones");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig has bones");
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
     let motions = MotionSet {
         clips,
@@ -85,8 +85,8 @@ pub fn in_centimetres_and_z_up() -> CharacterDef {
 pub fn kaykit() -> CharacterDef {
     let of = |name: &str| data::document(&format!("kaykit_mannequin/{name}"));
     let rig = of("manny_med_mod.gltf").rig;
-    let analysis = analyze(&rig).expect("it has a skin");
-    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("it has bones");
+    let analysis = analyze(&rig).expect("the rig has a skin");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig has bones");
     let own = |file: &str, clip: &str| {
         let document = of(file);
         let clip = document.clips.iter().find(|own| own.name.ends_with(clip)).expect("it has that clip");

@@ -34,7 +34,7 @@ fn character_with_thin_bodies(backstop: Option<Backstop>) -> CharacterDef {
     let full = worn(&SKIRT, backstop);
     let mut ragdoll = full.ragdoll.clone();
     ragdoll.bodies.iter_mut().for_each(|body| body.shape = thinner(&body.shape, 0.5));
-    let analysis = sinew_anim::analyze(&full.rig).expect("it has a skin");
+    let analysis = sinew_anim::analyze(&full.rig).expect("the rig has a skin");
     let mut def = CharacterDef::new(full.rig.clone(), ragdoll, &analysis.bind_model);
     def.set_garments(full.garments().source());
     def

@@ -22,7 +22,7 @@ fn baked(def: &Arc<CharacterDef>, impulse: Vec3, fps: f32) -> Baked {
 }
 
 fn baked_within(def: &Arc<CharacterDef>, impulse: Vec3, fps: f32, key_bound: KeyBound) -> Baked {
-    let body = def.body_named("chest").expect("it has a chest");
+    let body = def.body_named("chest").expect("the character has a chest");
     let (bodies, hits) = ([floor()], [BakeHit { time: 0.8, body, impulse }]);
     let input = BakeInput {
         bodies: &bodies,
@@ -202,8 +202,8 @@ fn no_bound_keeps_every_key() {
 #[test]
 fn weak_hit_bakes_a_flinch() {
     let def = shared(walker());
-    let body = def.body_named("rightHand").expect("it has hands");
-    let chest = def.body_named("chest").expect("it has a chest");
+    let body = def.body_named("rightHand").expect("the character has hands");
+    let chest = def.body_named("chest").expect("the character has a chest");
     let run = |hit_effect: HitEffect| {
         let hits = [
             BakeHit { time: 0.5, body, impulse: Vec3::X * -5.0 },
@@ -254,7 +254,11 @@ fn a_figure_with_large_feet_and_head_keeps_its_limits_in_a_bake() {
         ("rightFoot", Vec3::new(0.0, 60.0, -40.0)),
         ("hips", Vec3::Z * 150.0),
     ] {
-        let hits = [BakeHit { time: 0.6, body: def.body_named(body).expect("it has that"), impulse }];
+        let hits = [BakeHit {
+            time: 0.6,
+            body: def.body_named(body).expect("the character has this part"),
+            impulse,
+        }];
         let bodies = [floor()];
         let input = BakeInput { bodies: &bodies, hits: &hits, seconds: 4.0, ..BakeInput::new(def.clone()) };
         let baked = bake(&input);
@@ -325,7 +329,7 @@ fn timed_drives_move_parts_and_return_them() {
     let own = BakeInput { bodies: &bodies, seconds: 4.0, ..BakeInput::new(def.clone()) };
     let driven = bake(&BakeInput { drives: &drives, ..own.clone() });
     let (own, there) = (places(&def, &bake(&own)), places(&def, &driven));
-    let hand = def.rig.joints.iter().position(|joint| joint.name == "leftHand").expect("it has one");
+    let hand = def.rig.joints.iter().position(|joint| joint.name == "leftHand").expect("the body exists");
     let away: Vec<f32> = own.iter().zip(&there).map(|(a, b)| (a[hand] - b[hand]).length()).collect();
     assert!(away[..14].iter().all(|&away| away < 0.02), "{:?}", &away[..14]);
     assert!(away[15..60].iter().any(|&away| away > 0.05), "{:?}", &away[15..60]);
@@ -365,12 +369,12 @@ fn joint_bake_shares_one_world_and_can_be_cancelled() {
     let two = BakeInput { bodies: &[], world_from_character: at(0.4), limp_at: Some(0.6), ..one.clone() };
     let far = BakeInput { world_from_character: at(40.0), ..two.clone() };
     let go_on = &mut |_: f32| ControlFlow::Continue(());
-    let met = bake_together(&[one.clone(), two.clone()], go_on).expect("nothing stops it");
-    let apart = bake_together(&[one.clone(), far], go_on).expect("nothing stops it");
+    let met = bake_together(&[one.clone(), two.clone()], go_on).expect("nothing stops the motion");
+    let apart = bake_together(&[one.clone(), far], go_on).expect("nothing stops the motion");
     assert_ne!(met[0].frames, apart[0].frames, "they collide");
     assert_eq!(
         met,
-        bake_together(&[one.clone(), two], go_on).expect("nothing stops it"),
+        bake_together(&[one.clone(), two], go_on).expect("nothing stops the motion"),
         "a second bake must be identical"
     );
     let mut event_count = 0;

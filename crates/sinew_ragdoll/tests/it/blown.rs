@@ -101,7 +101,7 @@ fn weak_explosion_causes_a_flinch_and_displacement() {
 #[test]
 fn bullet_or_impulse_on_an_animated_body_counts_as_a_hit() {
     let def = shared(walker());
-    let chest = def.body_named("chest").expect("it has a chest");
+    let chest = def.body_named("chest").expect("the character has a chest");
     for (size, state) in [(1.0, State::Animated), (20.0, State::Flinching), (90.0, State::Limp)] {
         let (mut world, mut character) = standing(&def);
         world.apply_impulse_at_center(character.bodies()[chest], Vec3::X * size);

@@ -35,7 +35,7 @@ fn apart(one: &Character, twin: &Character) -> f32 {
 #[test]
 fn hit_hand_yields_and_returns_smoothly() {
     let def = shared(walker());
-    let hand = def.body_named("rightHand").expect("it has hands");
+    let hand = def.body_named("rightHand").expect("the character has hands");
     let (mut world, mut character) = walking(&def);
     let (mut twin_world, mut twin) = walking(&def);
     character.hit(&mut world, hand, Vec3::new(-6.0, 0.0, 0.0));
@@ -71,7 +71,7 @@ fn hit_hand_yields_and_returns_smoothly() {
 #[test]
 fn arm_hit_into_a_wall_leaves_it_at_once() {
     let def = shared(walker());
-    let hand = def.body_named("rightHand").expect("it has hands");
+    let hand = def.body_named("rightHand").expect("the character has hands");
     let (mut world, mut character) = walking(&def);
     let side = if places(&character)[hand].x > 0.0 { 1.0 } else { -1.0 };
     let beside = |character: &Character| places(character)[hand].x * side;
@@ -136,7 +136,7 @@ fn hands_of_a_walker_that_a_wall_stops_stay_out_of_it() {
         let radius = def.swept_radius();
         assert!((0.4..0.7).contains(&radius), "{radius} m");
         if wide {
-            def.in_world.mover.as_mut().expect("it has one").radius = radius;
+            def.in_world.mover.as_mut().expect("the body exists").radius = radius;
         }
         let mut world = level();
         let half_extents = Vec3::new(3.0, 2.0, 0.2);
@@ -160,7 +160,7 @@ fn impulse_thresholds_decide_between_flinch_and_fall() {
         def.in_world.toughness = toughness;
         let def = shared(def);
         let (mut world, mut character) = walking(&def);
-        let chest = def.body_named("chest").expect("it has a chest");
+        let chest = def.body_named("chest").expect("the character has a chest");
         character.hit(&mut world, chest, Vec3::X * size);
         character.state() == State::Limp
     };
@@ -176,7 +176,7 @@ fn impulse_thresholds_decide_between_flinch_and_fall() {
 fn hit_by_a_ray_flinches_the_limb_and_a_second_hit_fells() {
     let def = shared(walker());
     let (mut world, mut character) = walking(&def);
-    let at = places(&character)[def.body_named("head").expect("it has a head")] + Vec3::Y * 0.1;
+    let at = places(&character)[def.body_named("head").expect("the character has a head")] + Vec3::Y * 0.1;
     let shot = Ray { origin: at + Vec3::Z * 3.0, direction: Vec3::Z * -6.0 };
     let hit = world.query().first(&shot).expect("the shot hits the head");
     assert_eq!(character.body_index(hit.body), def.body_named("head"));
@@ -230,7 +230,7 @@ fn one_part_can_have_another_drive() {
     run(&mut twin_world, &mut twin, 60);
     let (with, without) = (places(&character), places(&twin));
     let off = |role: &str| {
-        let body = def.body_named(role).expect("a body");
+        let body = def.body_named(role).expect("the body exists");
         (with[body] - without[body]).length()
     };
     assert!(off("rightHand") < 2e-3 && off("head") < 2e-3 && off("leftFoot") < 2e-3);
@@ -317,7 +317,7 @@ fn until(world: &mut World, character: &mut Character, state: State) -> f32 {
 #[test]
 fn fallen_flinching_character_is_rolled_over_slowly() {
     let def = shared(walker());
-    let chest = def.body_named("chest").expect("it has a chest");
+    let chest = def.body_named("chest").expect("the character has a chest");
     let (mut world, mut character) = walking(&def);
     character.hit(&mut world, chest, Vec3::X * 10.0);
     run(&mut world, &mut character, 10);
@@ -330,7 +330,7 @@ fn fallen_flinching_character_is_rolled_over_slowly() {
 #[test]
 fn hit_threshold_is_higher_while_getting_up_near_the_ground() {
     let def = shared(walker());
-    let chest = def.body_named("chest").expect("it has a chest");
+    let chest = def.body_named("chest").expect("the character has a chest");
     let (mut world, mut character) = walking(&def);
     character.hit(&mut world, chest, Vec3::new(70.0, 0.0, 20.0));
     until(&mut world, &mut character, State::GettingUp);
@@ -351,7 +351,7 @@ fn hit_threshold_is_higher_while_getting_up_near_the_ground() {
 #[test]
 fn character_turns_to_its_heading_while_getting_up() {
     let def = shared(walker());
-    let chest = def.body_named("chest").expect("it has a chest");
+    let chest = def.body_named("chest").expect("the character has a chest");
     let mut speeds = [0.0; 2];
     for (faces, speed) in [false, true].into_iter().zip(&mut speeds) {
         let (mut world, mut character) = walking(&def);
@@ -379,7 +379,7 @@ fn character_turns_to_its_heading_while_getting_up() {
 #[test]
 fn hit_bodies_go_on_at_the_end_of_a_flinch() {
     let def = shared(walker());
-    let hand = def.body_named("rightHand").expect("it has a hand");
+    let hand = def.body_named("rightHand").expect("the character has a hand");
     let (mut world, mut character) = walking(&def);
     let mut fastest_led = 0.0;
     for _ in 0..60 {

@@ -25,8 +25,8 @@ pub const OTHERS: [&str; 11] = [
 ];
 
 pub fn built(rig: &Rig, options: &BuildOptions) -> (RagdollDef, BuildReport) {
-    let analysis = analyze(rig).expect("a skin");
-    build(rig, &analysis, options).expect("a ragdoll")
+    let analysis = analyze(rig).expect("the rig has a skin");
+    build(rig, &analysis, options).expect("the ragdoll can be built")
 }
 
 fn body(def: &RagdollDef, role: &str) -> usize {
@@ -122,7 +122,7 @@ fn sex_and_mass_options_are_applied() {
 #[test]
 fn rig_without_skin_is_rejected() {
     let rig = rig("SimpleSkin.gltf");
-    let analysis = analyze(&rig).expect("a skin");
+    let analysis = analyze(&rig).expect("the rig has a skin");
     let bare = Rig { skins: Vec::new(), ..rig.clone() };
     assert_eq!(build(&bare, &analysis, &BuildOptions::default()), Err(BuildError::NoSkin));
     assert_eq!(BuildError::NoSkin.to_string(), "no skin: nothing to build a ragdoll from");

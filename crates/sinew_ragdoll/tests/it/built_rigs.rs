@@ -108,8 +108,8 @@ impl Boxes {
         let source = self.joints.len();
         self.joints.push(Joint { name: named(name), parent: on, rest, source });
         self.places.push(place);
-        let first = u32::try_from(self.skin.positions.len()).expect("few");
-        let slot = u16::try_from(source).expect("few");
+        let first = u32::try_from(self.skin.positions.len()).expect("the count fits");
+        let slot = u16::try_from(source).expect("the count fits");
         for corner in 0..8 {
             let pick = |axis: usize| if corner >> axis & 1 == 0 { a[axis] } else { b[axis] };
             self.skin.positions.push(Vec3::new(pick(0), pick(1), pick(2)));

@@ -39,7 +39,7 @@ fn run_until(
 fn body_that_stands_needs_no_get_up_clip() {
     let mut def = walker();
     let motions = MotionSet { looped: None, ..def.motions().clone() };
-    def.set_motions(motions).expect("they play");
+    def.set_motions(motions).expect("the clips can be played");
     def.ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque = 1e4);
     for body in &mut def.ragdoll.bodies {
         if body.role.ends_with("Foot") {
@@ -79,7 +79,7 @@ fn knocked_over(def: &Arc<CharacterDef>, impulse: Vec3) -> (World, Character) {
     let mut world = world();
     let mut character = Character::new(def.clone(), somewhere(), 0.0);
     run_until(&mut world, &mut character, 0.5, |_| false);
-    let chest = def.body_named("chest").expect("it has a chest");
+    let chest = def.body_named("chest").expect("the character has a chest");
     let work = character.hit(&mut world, chest, impulse);
     assert!(work > 0.0);
     (world, character)
@@ -281,7 +281,8 @@ fn joints_without_bodies_keep_their_secondary_motion() {
     let mut world = world();
     let mut character = Character::new(def.clone(), somewhere(), 0.0);
     run_until(&mut world, &mut character, 0.4, |_| false);
-    let joint = |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("a joint");
+    let joint =
+        |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("the joint exists");
     let (finger, toes) = (joint("finger"), joint("leftToes"));
     assert!(def.mapping().free().contains(&finger) && !def.mapping().free().contains(&toes));
     let before = character.pose()[finger].rotation;
@@ -311,7 +312,8 @@ fn joints_without_bodies_keep_their_secondary_motion() {
 fn waving() -> Arc<CharacterDef> {
     let plain = walker();
     let mut rig = plain.rig.clone();
-    let hand = rig.joints.iter().position(|joint| joint.name == "leftHand").expect("it has a hand");
+    let hand =
+        rig.joints.iter().position(|joint| joint.name == "leftHand").expect("the character has a hand");
     let rest = LocalTransform { translation: Vec3::new(0.05, -0.05, 0.0), ..LocalTransform::default() };
     rig.joints.push(Joint { name: "finger".into(), parent: Some(hand), rest, source: rig.joints.len() });
     let finger = rig.joints.len() - 1;
@@ -324,8 +326,8 @@ fn waving() -> Arc<CharacterDef> {
         let (property, interpolation) = (Property::Rotation, Interpolation::Linear);
         clip.channels.push(Channel { joint: finger, property, interpolation, times, values });
     }
-    let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
-    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("it has bones");
+    let analysis = sinew_anim::analyze(&rig).expect("the rig has a skin");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig has bones");
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
     def.set_motions(motions).expect("clips that can be played");
     shared(def)
@@ -364,7 +366,8 @@ fn a_powered_fall_keeps_more_of_its_pose() {
         def.falling = falling;
         let def = shared(def);
         let (mut world, mut character) = knocked_over(&def, Vec3::new(60.0, 0.0, 30.0));
-        let knee = def.rig.joints.iter().position(|joint| joint.name == "leftLowerLeg").expect("a knee");
+        let knee =
+            def.rig.joints.iter().position(|joint| joint.name == "leftLowerLeg").expect("the rig has a knee");
         let (mut off, mut steps) = (0.0, 0);
         for _ in 0..40 {
             world.step();

@@ -57,7 +57,7 @@ fn limp_character_leaves_the_floor_within_half_a_second() {
         world.add_body(&BodyDef::fixed(Shape::HalfSpace));
         let turn = Rotation::from_axis_angle(Vec3::Y, Random::new(seed).range(0.0, 6.0));
         let mut character = limp_at(&mut world, &def, Transform::new(Vec3::Y * -depth, turn));
-        let (step, speed) = out_of_it(&mut world, &mut character).expect("it comes out");
+        let (step, speed) = out_of_it(&mut world, &mut character).expect("the body leaves the solid");
         assert!(
             step < HALF_SECOND && speed <= 2.5,
             "depth {depth} m: clear after {step} steps, fastest {speed} m/s"
@@ -76,7 +76,7 @@ fn limp_character_leaves_a_wall_on_the_nearer_side() {
         let mut character = Character::spawn(&mut world, &def, place);
         character.update(&mut world);
         character.go_limp(&mut world);
-        let (step, speed) = out_of_it(&mut world, &mut character).expect("it comes out");
+        let (step, speed) = out_of_it(&mut world, &mut character).expect("the body leaves the solid");
         assert!(
             step < HALF_SECOND && speed <= 2.5,
             "seed {seed}: clear after {step} steps, fastest {speed} m/s"
@@ -111,7 +111,7 @@ fn moving_character_leaves_a_wall_on_its_entry_side() {
             world.set_velocity(body, Velocity { linear: Vec3::Z * speed, ..Velocity::default() });
         }
         assert!(character.clear(&mut world) && !character.clear(&mut world));
-        let (step, _) = out_of_it(&mut world, &mut character).expect("it comes out");
+        let (step, _) = out_of_it(&mut world, &mut character).expect("the body leaves the solid");
         let chest = world.transform(character.bodies()[0]).translation.z;
         assert!(
             step < HALF_SECOND && chest * speed < 0.0,
@@ -152,7 +152,7 @@ fn snapshot_during_clearing_continues_identically() {
     character.save(&mut bytes);
     let mut input = Reader::new(bytes.as_bytes());
     let mut other = World::new(WorldDef::default());
-    other.load(&mut input).expect("it was saved");
+    other.load(&mut input).expect("the saved state is valid");
     let mut twin = Character::new(def, Transform::IDENTITY, 0.0);
     twin.load(&mut input).expect("the bytes are a snapshot");
     for step in 0..120 {

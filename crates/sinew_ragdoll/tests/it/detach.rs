@@ -23,7 +23,7 @@ fn in_state(def: &Arc<CharacterDef>, state: State) -> (World, Character) {
     match state {
         State::Animated => {}
         State::Flinching => {
-            let hand = def.body_named("rightHand").expect("it has hands");
+            let hand = def.body_named("rightHand").expect("the character has hands");
             character.hit(&mut world, hand, Vec3::new(-6.0, 0.0, 0.0));
         }
         State::Powered => character.set_preset(&mut world, Preset::Powered),
@@ -70,7 +70,7 @@ fn message(panics: impl FnOnce()) -> String {
 fn removing_an_owned_body_names_the_character_and_the_call() {
     let def = shared(walker());
     let (mut world, character) = in_state(&def, State::Limp);
-    let arm = character.bodies()[def.body_named("leftUpperArm").expect("it has arms")];
+    let arm = character.bodies()[def.body_named("leftUpperArm").expect("the character has arms")];
     let joints: Vec<JointId> = world.joints_of(arm).collect();
     let panic_text = message(|| world.remove_joint(joints[0]));
     assert!(
@@ -86,7 +86,7 @@ fn removing_an_owned_body_names_the_character_and_the_call() {
     let mut w = Writer::new();
     world.save(&mut w);
     let mut other = World::new(world.def().clone());
-    other.load(&mut Reader::new(w.as_bytes())).expect("it is a snapshot");
+    other.load(&mut Reader::new(w.as_bytes())).expect("the snapshot is valid");
     let panic_text = message(|| other.remove_body(arm));
     assert!(panic_text.contains("character's leftUpperArm"), "{panic_text}");
     let (mut world, character) = in_state(&def, State::Animated);
@@ -113,12 +113,12 @@ fn detached_limb_keeps_its_motion_in_every_state() {
         ] {
             let (mut world, mut character) = in_state(&def, state);
             let what = format!("{bone} off in state {state:?}");
-            let first = def.body_named(bone).expect("it has that");
+            let first = def.body_named(bone).expect("the character has this part");
             let had: Vec<_> = character.bodies().to_vec();
             let is_led = world.kind(had[first]) != BodyKind::Dynamic;
             let before: Vec<Velocity> = had.iter().map(|&body| world.velocity(body)).collect();
             let (joules, speed) = (energy(&world), fastest(&world));
-            let limb = character.detach(&mut world, bone).expect("it has that");
+            let limb = character.detach(&mut world, bone).expect("the character has this part");
             assert!(character.events().contains(&CharacterEvent::Detached { body: first }), "{what}");
             if !is_led {
                 assert!(
@@ -174,7 +174,7 @@ fn detached_limb_keeps_its_motion_in_every_state() {
 fn nested_limbs_and_the_rest_share_the_whole_skin() {
     let def = shared(walker());
     let (mut world, mut character) = in_state(&def, State::Limp);
-    let mut arm = character.detach(&mut world, "leftUpperArm").expect("it has arms");
+    let mut arm = character.detach(&mut world, "leftUpperArm").expect("the character has arms");
     let hand = arm.detach(&mut world, "leftHand").expect("the arm has a hand");
     assert!(arm.detach(&mut world, "leftHand").is_none(), "a detached limb cannot be detached again");
     assert!(arm.detach(&mut world, "leftUpperArm").is_none(), "a limb's root cannot be detached");
@@ -192,7 +192,7 @@ fn nested_limbs_and_the_rest_share_the_whole_skin() {
     run(&mut world, &mut character, 120);
     let mut places = Vec::new();
     arm.world_from_joints(&world, 1.0, &mut places);
-    let upper = def.body_named("leftUpperArm").expect("it has arms");
+    let upper = def.body_named("leftUpperArm").expect("the character has arms");
     let bind = |body: usize| def.ragdoll.bodies[body].character_from_body;
     let joint =
         arm.skin_joints().position(|joint| joint == def.ragdoll.bodies[upper].joint).expect("its own");
@@ -231,9 +231,9 @@ fn detached_character_is_identical_in_a_loaded_world() {
         limbs.iter().for_each(|limb| limb.save(&mut w));
         let mut r = Reader::new(w.as_bytes());
         let mut other_world = World::new(world.def().clone());
-        other_world.load(&mut r).expect("it is a snapshot");
+        other_world.load(&mut r).expect("the snapshot is valid");
         let mut other = Character::new(def.clone(), Transform::IDENTITY, 0.0);
-        other.load(&mut r).expect("it is a character");
+        other.load(&mut r).expect("the file is a character");
         let loaded: Vec<Limb> =
             limbs.iter().map(|_| Limb::load(&def, &mut r).expect("it is a limb")).collect();
         r.finish().expect("there is no more");
@@ -266,7 +266,7 @@ fn garments_stay_attached_to_the_remaining_body() {
             groups.collect::<Vec<_>>()
         };
         let before = particles(&world, &character);
-        let limb = character.detach(&mut world, bone).expect("it has that");
+        let limb = character.detach(&mut world, bone).expect("the character has this part");
         assert_eq!(particles(&world, &character), before, "{bone}: cloth positions changed");
         let attached = world.group_ids().flat_map(|id| world.particles(id).attachments().to_vec());
         let holds = |target: &AttachmentTarget| match target {
@@ -284,9 +284,9 @@ fn garments_stay_attached_to_the_remaining_body() {
         character.save(&mut w);
         let mut r = Reader::new(w.as_bytes());
         let mut other_world = World::new(world.def().clone());
-        other_world.load(&mut r).expect("it is a snapshot");
+        other_world.load(&mut r).expect("the snapshot is valid");
         let mut other = Character::new(def.clone(), Transform::IDENTITY, 0.0);
-        other.load(&mut r).expect("it is a character");
+        other.load(&mut r).expect("the file is a character");
         for step in 0..200 {
             for (world, character) in [(&mut world, &mut character), (&mut other_world, &mut other)] {
                 world.step();

@@ -550,7 +550,7 @@ fn add_slot(rig: &mut Rig, mesh: usize, slot: usize, joint: JointIdx, offset: Ve
     let moved = Affine { translation: -offset, ..Affine::IDENTITY };
     skin.joints.push(joint);
     skin.inverse_bind.push(moved * skin.inverse_bind[slot]);
-    u16::try_from(skin.joints.len() - 1).expect("few")
+    u16::try_from(skin.joints.len() - 1).expect("the count fits")
 }
 
 /// Adds a strand of hair to a joint, three joints long, with a little skin.
@@ -559,7 +559,7 @@ pub fn with_hair(rig: &Rig, analysis: &RigAnalysis, head: JointIdx, random: &mut
     let mut rig = rig.clone();
     let size = analysis.height / analysis.unit_scale;
     let way = (analysis.up_axis + random.in_cube() * 0.8).normalize() * (0.02 * size);
-    let head_from_mesh = rig.skins[rig.meshes[mesh].skin.expect("skinned")].inverse_bind[slot];
+    let head_from_mesh = rig.skins[rig.meshes[mesh].skin.expect("the rig is skinned")].inverse_bind[slot];
     let head_from_model = analysis.bind_model[head].inverse();
     let (mesh_from_head, step) = (head_from_mesh.inverse(), head_from_model.vector(way));
     let (mut parent, mut skin) = (head, Primitive::default());
@@ -573,7 +573,7 @@ pub fn with_hair(rig: &Rig, analysis: &RigAnalysis, head: JointIdx, random: &mut
         });
         parent = rig.joints.len() - 1;
         let slot = add_slot(&mut rig, mesh, slot, parent, step * part as f32);
-        let first = u32::try_from(skin.positions.len()).expect("few");
+        let first = u32::try_from(skin.positions.len()).expect("the count fits");
         let side = step.cross(Vec3::new(0.3, 0.5, 0.8)).normalize() * (0.1 * step.length());
         for (along, across) in [(0.0, 1.0), (0.0, -1.0), (1.0, 0.0)] {
             let at = step * (part as f32 + along) + side * across;
@@ -626,7 +626,8 @@ pub fn with_twists(rig: &Rig, analysis: &RigAnalysis) -> Rig {
             rig.joints.push(Joint { name, parent: Some(joint), rest, source: rig.joints.len() });
             let twist = rig.joints.len() - 1;
             let twist = add_slot(&mut rig, mesh, slot, twist, offset);
-            let joint_from_mesh = rig.skins[rig.meshes[mesh].skin.expect("skinned")].inverse_bind[slot];
+            let joint_from_mesh =
+                rig.skins[rig.meshes[mesh].skin.expect("the rig is skinned")].inverse_bind[slot];
             give_far_half(&mut rig.meshes[mesh], &joint_from_mesh, offset, slot, twist);
         }
     }
@@ -653,7 +654,7 @@ pub fn unweighted(rig: &Rig, bones: &[(JointIdx, JointIdx)]) -> Rig {
         let slot = |joint: JointIdx| joints.iter().position(|&other| other == joint);
         for &(bone, carrier) in bones {
             let (Some(from), Some(to)) = (slot(bone), slot(carrier)) else { continue };
-            let to = u16::try_from(to).expect("few");
+            let to = u16::try_from(to).expect("the count fits");
             for slots in mesh.primitives.iter_mut().flat_map(|primitive| &mut primitive.joints) {
                 slots.iter_mut().filter(|slot| usize::from(**slot) == from).for_each(|slot| *slot = to);
             }
@@ -672,7 +673,7 @@ pub fn with_eyes(rig: &Rig, analysis: &RigAnalysis, head: JointIdx) -> Rig {
     let mut primitive = Primitive::default();
     for side in [-0.015, 0.015] {
         let eye = place + to_model.rotation * (Vec3::new(side, 0.0, 0.03) * size);
-        let first = u32::try_from(primitive.positions.len()).expect("few");
+        let first = u32::try_from(primitive.positions.len()).expect("the count fits");
         let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| eye + corner * (0.004 * size));
         primitive.positions.extend(corners);
         primitive.joints.extend([[0; 4]; 4]);

@@ -21,8 +21,8 @@ fn healthy() -> Repair {
 /// Returns the healthy ragdoll of a rig from another author, if the data are present.
 fn healthy_other_ragdoll() -> Repair {
     let rig = crate::data::rig("mannequiny.glb");
-    let analysis = sinew_anim::analyze(&rig).expect("a skin");
-    let (def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
+    let analysis = sinew_anim::analyze(&rig).expect("the rig has a skin");
+    let (def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig can be built");
     Repair { reference: Some(def.clone()), ..Repair::new(def) }
 }
 
@@ -561,6 +561,7 @@ fn remedy_for_skin_names_the_bone() {
     };
     let repair = Repair { skin: vec![flaw.clone()], ..healthy() };
     let found = doctor(&repair);
-    let skin = found.iter().find(|found| found.code == Code::SkinUncovered).expect("a finding");
+    let skin =
+        found.iter().find(|found| found.code == Code::SkinUncovered).expect("the doctor reports a finding");
     assert_eq!(skin.fix, flaw.remedy);
 }

@@ -105,7 +105,7 @@ impl Driven {
     }
 
     fn index(&self, role: &str) -> usize {
-        self.def.bodies.iter().position(|body| body.role == role).expect("the mannequin has it")
+        self.def.bodies.iter().position(|body| body.role == role).expect("the mannequin has the part")
     }
 }
 
@@ -373,8 +373,8 @@ fn drives_saved_during_a_blend_continue_identically() {
     driven.run(1.0);
     let hash = driven.world.hash();
     let mut other = Drives::new(&driven.def);
-    other.load(&mut Reader::new(drives.as_bytes())).expect("it was saved");
-    driven.world.load(&mut Reader::new(world.as_bytes())).expect("it was saved");
+    other.load(&mut Reader::new(drives.as_bytes())).expect("the saved state is valid");
+    driven.world.load(&mut Reader::new(world.as_bytes())).expect("the saved state is valid");
     driven.drives = other;
     driven.run(1.0);
     assert_eq!(driven.world.hash(), hash);

@@ -47,7 +47,7 @@ struct Fall {
 
 fn head(character: &Character) -> f32 {
     let def = character.def();
-    let body = def.body_named("head").expect("it has a head");
+    let body = def.body_named("head").expect("the character has a head");
     let mut model = Vec::new();
     sinew_anim::local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
     model[def.ragdoll.bodies[body].joint].translation.y

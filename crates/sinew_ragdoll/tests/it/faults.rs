@@ -13,8 +13,8 @@ use std::sync::Arc;
 
 fn built() -> RagdollDef {
     let rig = mannequin().rig;
-    let analysis = analyze(&rig).expect("a skin");
-    build(&rig, &analysis, &BuildOptions::default()).expect("bones").0
+    let analysis = analyze(&rig).expect("the rig has a skin");
+    build(&rig, &analysis, &BuildOptions::default()).expect("the rig can be built").0
 }
 
 fn verdict(def: &RagdollDef) -> Option<(Verdict, String)> {
@@ -32,19 +32,19 @@ fn mannequin_has_no_faults() {
 fn limbs_on_the_wrong_side_are_reported() {
     let mut def = built();
     let at = |def: &RagdollDef, role: &str| {
-        def.bodies.iter().position(|body| body.role == role).expect("it is there")
+        def.bodies.iter().position(|body| body.role == role).expect("the named item exists")
     };
     let (left, right) = (at(&def, "leftUpperArm"), at(&def, "rightUpperArm"));
     let bones = [left, right].map(|body| def.bodies[body].bone.clone());
     (def.bodies[left].role, def.bodies[right].role) = ("rightUpperArm".into(), "leftUpperArm".into());
-    let (at_most, reason) = verdict(&def).expect("a fault");
+    let (at_most, reason) = verdict(&def).expect("the verdict is limited");
     assert_eq!(at_most, Verdict::Usable, "{reason}");
     assert!(bones.iter().all(|bone| reason.contains(bone)), "{reason}");
     // Both arms are labelled left.
     let mut def = built();
     def.bodies[right].character_from_body = def.bodies[left].character_from_body;
     def.joints[right - 1].frame_child = def.joints[left - 1].frame_child;
-    let (at_most, reason) = verdict(&def).expect("a fault");
+    let (at_most, reason) = verdict(&def).expect("the verdict is limited");
     assert_eq!(at_most, Verdict::Bad, "{reason}");
     assert!(reason.contains("on the same side"), "{reason}");
 }
@@ -54,7 +54,7 @@ fn one_body_for_a_rig_of_many_joints_is_bad() {
     let mut def = built();
     def.bodies.truncate(1);
     def.joints.clear();
-    let (at_most, reason) = verdict(&def).expect("a fault");
+    let (at_most, reason) = verdict(&def).expect("the verdict is limited");
     assert_eq!(at_most, Verdict::Bad, "{reason}");
     assert!(reason.contains("statue") && reason.contains("--body"), "{reason}");
 }
@@ -68,7 +68,7 @@ fn implausible_masses_and_sizes_are_reported() {
     small.total_mass = 8.0;
     small.bodies.iter_mut().for_each(|body| body.character_from_body.translation *= share);
     small.joints.iter_mut().for_each(|joint| joint.frame_child.translation *= share);
-    let doubt = Doubt::of(&small).expect("a doubt");
+    let doubt = Doubt::of(&small).expect("the mass is doubtful");
     assert!(doubt.reason.contains("8 kg at a height of 0.570 m"), "{}", doubt.reason);
     let mut heavy = built();
     heavy.total_mass *= 4.0;
@@ -89,7 +89,7 @@ fn creature_too_heavy_for_its_length_is_reported() {
         def.total_mass = mass;
         Doubt::of(&def)
     };
-    let doubt = creature(625.0).expect("a doubt");
+    let doubt = creature(625.0).expect("the mass is doubtful");
     assert!(doubt.reason.contains("625 kg at a length of 1.7"), "{}", doubt.reason);
     assert_eq!(creature(200.0), None);
 }
@@ -99,7 +99,7 @@ fn creature_too_heavy_for_its_length_is_reported() {
 fn tall_body_that_stays_upright_is_reported() {
     let faults = |rust: f32| {
         let rig = mannequin().rig;
-        let analysis = analyze(&rig).expect("a skin");
+        let analysis = analyze(&rig).expect("the rig has a skin");
         let mut ragdoll = built();
         ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque += rust);
         let mut character = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
@@ -124,7 +124,7 @@ fn tall_body_that_stays_upright_is_reported() {
 fn upright_body_is_pushed_over() {
     let pushed = |rust: f32| {
         let rig = mannequin().rig;
-        let analysis = analyze(&rig).expect("a skin");
+        let analysis = analyze(&rig).expect("the rig has a skin");
         let mut ragdoll = built();
         ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque += rust);
         let mut character = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
@@ -148,7 +148,7 @@ fn upright_body_is_pushed_over() {
 #[test]
 fn character_that_shrinks_before_get_up_is_reported() {
     let rig = mannequin().rig;
-    let analysis = analyze(&rig).expect("a skin");
+    let analysis = analyze(&rig).expect("the rig has a skin");
     let character = CharacterDef::new(rig, built(), &analysis.bind_model);
     let hips = character.ragdoll.bodies[0].joint;
     let ground = [BodyDef::fixed(Shape::HalfSpace)];
@@ -167,7 +167,7 @@ fn character_that_shrinks_before_get_up_is_reported() {
     };
     assert_eq!(sized(&baked), None);
     baked.frames[0].pose[hips].scale *= 2.65;
-    let fault = sized(&baked).expect("a fault");
+    let fault = sized(&baked).expect("the verdict is limited");
     assert_eq!(fault.at_most, Verdict::Bad);
     assert!(fault.reason.contains("0.38 times"), "{}", fault.reason);
 }
@@ -176,7 +176,7 @@ fn character_that_shrinks_before_get_up_is_reported() {
 #[test]
 fn upright_body_with_outstretched_arms_is_reported() {
     let rig = mannequin().rig;
-    let analysis = analyze(&rig).expect("a skin");
+    let analysis = analyze(&rig).expect("the rig has a skin");
     let mut ragdoll = built();
     ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque += 1e4);
     let joint = |role: &str| {
@@ -210,7 +210,7 @@ fn upright_body_with_outstretched_arms_is_reported() {
 #[test]
 fn character_inside_the_world_is_bad() {
     let (rig, own) = (mannequin().rig, mannequin().clips);
-    let analysis = analyze(&rig).expect("a skin");
+    let analysis = analyze(&rig).expect("the rig has a skin");
     let mut character = CharacterDef::new(rig, built(), &analysis.bind_model);
     let speed = 1.4;
     let motions = MotionSet {
@@ -219,7 +219,7 @@ fn character_inside_the_world_is_bad() {
         locomotion: Locomotion::Forward { speed },
         ..MotionSet::default()
     };
-    character.set_motions(motions).expect("it can be played");
+    character.set_motions(motions).expect("the clip can be played");
     let character = Arc::new(character);
     let reasons = |at: Vec3, half_extents: Vec3| {
         let floor = BodyDef::fixed(Shape::HalfSpace);
@@ -238,7 +238,7 @@ fn character_inside_the_world_is_bad() {
 
 /// Returns a box of `half_extents` at `center`, bound to the joint of `slot`.
 fn block(skinned: &mut Primitive, center: Vec3, half_extents: Vec3, slot: u16) {
-    let first = u32::try_from(skinned.positions.len()).expect("few");
+    let first = u32::try_from(skinned.positions.len()).expect("the count fits");
     let corner = |i: u32| {
         let sign = |bit: u32| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
         center + half_extents * Vec3::new(sign(0), sign(1), sign(2))
@@ -276,7 +276,7 @@ fn animal_on(name: &str, rust: f32, [length, thickness]: [f32; 2]) -> CharacterD
         let translation = place - parent.map_or(Vec3::ZERO, |parent: usize| places[parent].1);
         let rest = LocalTransform { translation, ..LocalTransform::default() };
         rig.joints.push(Joint { name: format!("bone{i}"), parent, rest, source: i });
-        let slot = u16::try_from(i).expect("few");
+        let slot = u16::try_from(i).expect("the count fits");
         match i {
             0 => {}
             1 | 2 => block(&mut skinned, place, Vec3::new(0.18, 0.12, 0.3), slot),
@@ -291,8 +291,8 @@ fn animal_on(name: &str, rust: f32, [length, thickness]: [f32; 2]) -> CharacterD
     rig.skins = vec![Skin { name: String::new(), joints: (0..places.len()).collect(), inverse_bind }];
     rig.meshes = vec![RigMesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![skinned] }];
     let upright = Hints { name: name.into(), up: Some(Vec3::Y), ..Hints::default() };
-    let analysis = analyze_hinted(&rig, &upright).expect("a skin");
-    let (mut ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
+    let analysis = analyze_hinted(&rig, &upright).expect("the rig has a skin");
+    let (mut ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig can be built");
     ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque += rust);
     CharacterDef::new(rig, ragdoll, &analysis.bind_model)
 }
@@ -366,7 +366,7 @@ fn rump_that_counts_as_a_limb_is_seen() {
 #[test]
 fn character_in_the_air_is_not_good() {
     let (rig, own) = (mannequin().rig, mannequin().clips);
-    let analysis = analyze(&rig).expect("a skin");
+    let analysis = analyze(&rig).expect("the rig has a skin");
     let mut character = CharacterDef::new(rig, built(), &analysis.bind_model);
     let motions = MotionSet {
         clips: own,
@@ -374,7 +374,7 @@ fn character_in_the_air_is_not_good() {
         locomotion: Locomotion::Forward { speed: 1.4 },
         ..MotionSet::default()
     };
-    character.set_motions(motions).expect("it can be played");
+    character.set_motions(motions).expect("the clip can be played");
     let character = Arc::new(character);
     let reasons = |edge: f32, up: f32| {
         let half_extents = Vec3::new(3.0, 0.5, edge);
@@ -384,7 +384,8 @@ fn character_in_the_air_is_not_good() {
         input.world_from_character.translation.y = up;
         let mut baked = bake(&input);
         // A character that falls over the edge counts as if its clip had moved it on.
-        let root = character.rig.joints.iter().position(|joint| joint.parent.is_none()).expect("a root");
+        let root =
+            character.rig.joints.iter().position(|joint| joint.parent.is_none()).expect("the rig has a root");
         for frame in &mut baked.frames {
             if frame.state != State::Animated {
                 frame.state = State::Animated;

@@ -376,7 +376,7 @@ fn bodies_do_not_overshoot_a_jump() {
     let mut fastest = 0.0;
     for step in 0..70 {
         if step == 60 {
-            let mover = character.mover().expect("it stands");
+            let mover = character.mover().expect("the character stands");
             let place = world.mover(mover).position();
             world.set_mover_position(mover, place + Vec3::X * 0.15);
         }

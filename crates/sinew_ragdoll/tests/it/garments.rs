@@ -115,7 +115,9 @@ fn garments_are_found_by_bone_names() {
 #[test]
 fn invalid_garment_chains_are_skipped() {
     let mut def = dressed(&[&CAPE], |_| ());
-    let joint = |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("it is there");
+    let joint = |name: &str| {
+        def.rig.joints.iter().position(|joint| joint.name == name).expect("the named item exists")
+    };
     let (leg, cape) = (joint("leftUpperLeg"), joint("cape_0_0"));
     let column = |top| GarmentColumn::below(&def.rig, top);
     // Bodies move the legs, and a single remaining chain is not a sheet.
@@ -254,10 +256,10 @@ fn snapshot_during_a_swing_continues_identically() {
     let mut w = Writer::new();
     world.save(&mut w);
     let mut other = World::new(WorldDef::default());
-    other.load(&mut Reader::new(w.as_bytes())).expect("it was saved");
+    other.load(&mut Reader::new(w.as_bytes())).expect("the saved state is valid");
     let saved = bytes(&character);
     let mut copy = Character::new(character.def().clone(), Transform::IDENTITY, 0.0);
-    copy.load(&mut Reader::new(&saved)).expect("it was saved");
+    copy.load(&mut Reader::new(&saved)).expect("the saved state is valid");
     assert_eq!(copy.pose(), character.pose());
     for _ in 0..60 {
         go_on(&mut world, &mut character, 1);
@@ -319,7 +321,7 @@ fn bake_includes_garment_bones() {
     };
     assert!(def.garments().joints().all(turns));
     // Garment bones also move before the fall.
-    let joint = def.garments().joints().next().expect("it has bones");
+    let joint = def.garments().joints().next().expect("the rig has bones");
     let swings = worn.frames.iter().filter(|frame| frame.time < 0.5);
     let most = swings.map(|frame| frame.pose[joint].rotation.angle_to(def.rest()[joint].rotation));
     assert!(most.fold(0.0, max) > 0.02, "the garment must swing while walking");
@@ -361,7 +363,7 @@ fn garment_bones_do_not_shape_the_body() {
     use sinew_ragdoll::{BuildOptions, Settings, build_with};
     let (rig, bare) = (dressed_rig(&[&SKIRT, &CAPE]), sinew_scenes::mannequin::mannequin().rig);
     let of = |rig: &sinew_anim::Rig, settings: &Settings| {
-        let analysis = sinew_anim::analyze(rig).expect("it has a skin");
+        let analysis = sinew_anim::analyze(rig).expect("the rig has a skin");
         build_with(rig, &analysis, &BuildOptions::default(), settings).expect("it can be built").0
     };
     let settings = Settings { garments: GarmentSource::Names, ..Settings::default() };

@@ -53,7 +53,7 @@ impl Seen {
 }
 
 fn body(def: &CharacterDef, name: &str) -> usize {
-    def.body_named(name).expect("it has that body")
+    def.body_named(name).expect("the ragdoll has this body")
 }
 
 /// Returns a limp character at rest on the ground.
@@ -75,7 +75,7 @@ fn mouse_grab_drags_a_limp_character() {
         let mut puppet = lying(&mut world, &def, Transform::IDENTITY);
         let held = puppet.bodies()[body(&def, limb)];
         let at = world.center_of_mass(held);
-        let mut mouse = GrabPoint::take(&mut world, held, at, &Grab::POINT).expect("it is there");
+        let mut mouse = GrabPoint::take(&mut world, held, at, &Grab::POINT).expect("the named item exists");
         let mut seen = Seen::default();
         for step in 0..800 {
             let target = match step / 60 {
@@ -194,7 +194,7 @@ fn grip_releases_at_its_maximum_force() {
     // The victim is fixed to the world.
     let grab = Grab { reach: 1.5, ..Grab::HAND };
     let (mut world, mut hero, mut victim, joint) = dragging(&def, "leftHand", 1, &grab);
-    let joint = joint.expect("it is in reach");
+    let joint = joint.expect("the point is in reach");
     let ground = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
     let hips = victim.bodies()[0];
     let place = world.transform(hips);
@@ -226,7 +226,8 @@ fn grip_releases_at_its_maximum_force() {
         let held = world.add_body(&BodyDef::dynamic(crate_).at(Vec3::Y * 1.5));
         let top = Vec3::Y * (1.5 + 0.5 * side);
         let slip = 0.4;
-        let mut crane = GrabPoint::take(&mut world, held, top, &Grab { slip, ..grab }).expect("it is there");
+        let mut crane =
+            GrabPoint::take(&mut world, held, top, &Grab { slip, ..grab }).expect("the named item exists");
         crane.set_target(top + Vec3::Y * 0.3);
         let (mut held_on, mut most) = (true, 0.0);
         for _ in 0..300 {
@@ -267,7 +268,7 @@ fn characters_holding_each_other_stay_together() {
         let mut grips = Vec::new();
         for (who, hand) in [(0, "leftHand"), (1, "rightHand")] {
             let other = pair[1 - who].bodies()[body(&def, "chest")];
-            grips.push(pair[who].grab(&mut world, hand, other, &grab).expect("they are in reach"));
+            grips.push(pair[who].grab(&mut world, hand, other, &grab).expect("the points are in reach"));
         }
         let mut seen = Seen::default();
         for _ in 0..400 {
@@ -304,7 +305,7 @@ fn character_carried_over_the_shoulder_stays_on() {
     let shoulder =
         world.transform(chest).inverse_point(world.center_of_mass(chest) + Vec3::new(0.2, 0.3, 0.0));
     let grab = Grab { max_force: 3000.0, reach: 2.0, to: Some(shoulder), speed: 1.0, ..Grab::HAND };
-    let grip = hero.grab(&mut world, "chest", hips, &grab).expect("it is in reach");
+    let grip = hero.grab(&mut world, "chest", hips, &grab).expect("the point is in reach");
     let mut seen = Seen::default();
     for step in 0..600 {
         if step == 180 {

@@ -90,7 +90,7 @@ fn ragdoll_inherits_the_momentum_of_the_walk() {
         }
         character.go_limp(&mut world);
         let momentum = world.momentum();
-        let ragdoll = character.ragdoll().expect("it is limp");
+        let ragdoll = character.ragdoll().expect("the character is limp");
         let (mut mass, mut moment) = (0.0, Vec3::ZERO);
         for &body in &ragdoll.bodies {
             mass += world.mass(body).mass;
@@ -204,7 +204,7 @@ fn momentum_matches_random_blends_of_clips() {
         checked += 1;
         character.go_limp(&mut world);
         let momentum = world.momentum();
-        let ragdoll = character.ragdoll().expect("it is limp");
+        let ragdoll = character.ragdoll().expect("the character is limp");
         let moment = ragdoll
             .bodies
             .iter()
@@ -347,7 +347,7 @@ fn first_jolt(def: &Arc<CharacterDef>) -> f32 {
             character.update(&mut world);
         }
         character.go_limp(&mut world);
-        let ragdoll = character.ragdoll().expect("it is limp").clone();
+        let ragdoll = character.ragdoll().expect("the character is limp").clone();
         let spins = |world: &World| -> Vec<Vec3> {
             ragdoll.bodies.iter().map(|&body| world.velocity(body).angular).collect()
         };

@@ -12,7 +12,7 @@ const MOST_SPEED: f32 = 15.0;
 const MOST_GAP: f32 = 0.05;
 
 fn body(def: &CharacterDef, name: &str) -> usize {
-    def.body_named(name).expect("it has that body")
+    def.body_named(name).expect("the ragdoll has this body")
 }
 
 /// Returns a kinematic ball without contacts at a body, and the joint between the two.
@@ -59,9 +59,9 @@ fn reload(world: &mut World, character: &mut Character) {
     world.save(&mut w);
     character.save(&mut w);
     let mut r = Reader::new(w.as_bytes());
-    world.load(&mut r).expect("a snapshot");
+    world.load(&mut r).expect("the snapshot is valid");
     let mut other = Character::new(character.def().clone(), Transform::IDENTITY, 0.0);
-    other.load(&mut r).expect("a snapshot");
+    other.load(&mut r).expect("the snapshot is valid");
     *character = other;
 }
 
@@ -158,7 +158,7 @@ fn walker_leads_another_character_by_the_wrist() {
         };
         away(a).total_cmp(&away(b))
     });
-    let grip = hero.grab(&mut world, hand.expect("two hands"), wrist, &grab).expect("it is in reach");
+    let grip = hero.grab(&mut world, hand.expect("two hands"), wrist, &grab).expect("the point is in reach");
     let mut seen = Seen::default();
     let mut force = 0.0;
     for frame in 0..420 {

@@ -46,7 +46,7 @@ fn wall_stops_a_walking_character() {
     block(&mut world, Vec3::new(-3.0, 0.0, 2.0), Vec3::new(3.0, 4.0, 2.3));
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     run(&mut world, &mut character, 300);
-    let radius = def.in_world.mover.as_ref().expect("it has one").radius;
+    let radius = def.in_world.mover.as_ref().expect("the body exists").radius;
     let z = place(&character).z;
     assert!((z - (2.0 - radius)).abs() < 0.02, "the character stands at {z} m; the wall is at 2 m");
     assert_eq!(character.state(), State::Animated);
@@ -79,7 +79,7 @@ fn two_characters_stop_each_other() {
         one.update(&mut world);
         other.update(&mut world);
         let apart = (place(&one) - place(&other)).length();
-        let radius = def.in_world.mover.as_ref().expect("it has one").radius;
+        let radius = def.in_world.mover.as_ref().expect("the body exists").radius;
         assert!(apart > 2.0 * radius - 0.01, "{apart} m apart");
     }
     assert!(place(&one).z < 2.1 && place(&other).z > 1.9);
@@ -158,7 +158,7 @@ fn ball_bounces_off_and_the_contact_is_reported() {
     let (mut events, mut met) = (Vec::new(), false);
     for _ in 0..12 {
         events.extend(run(&mut world, &mut character, 1));
-        let chest = character.bodies()[def.body_named("chest").expect("it has one")];
+        let chest = character.bodies()[def.body_named("chest").expect("the body exists")];
         let is_this_hit = |hit: &sinew_physics::Hit| [hit.a.body, hit.b.body] == [chest, thrown];
         met |= world.events().hits.iter().any(is_this_hit);
     }
@@ -377,8 +377,8 @@ fn character_gets_up_with_the_same_bodies() {
     let before = place(&character);
     run(&mut world, &mut character, 60);
     assert!((place(&character) - before).length() > 0.8 * WALK_SPEED);
-    let height = def.in_world.mover.as_ref().expect("it has one").height;
-    assert_eq!(world.mover(character.mover().expect("it stands")).def().height, height);
+    let height = def.in_world.mover.as_ref().expect("the body exists").height;
+    assert_eq!(world.mover(character.mover().expect("the character stands")).def().height, height);
 }
 
 #[test]
@@ -400,8 +400,8 @@ fn restored_character_continues_identically() {
         let mut reader = Reader::new(&bytes);
         let mut other_world = World::new(WorldDef::default());
         let mut other = Character::new(def.clone(), Transform::IDENTITY, 0.0);
-        other_world.load(&mut reader).expect("a snapshot");
-        other.load(&mut reader).expect("a snapshot");
+        other_world.load(&mut reader).expect("the snapshot is valid");
+        other.load(&mut reader).expect("the snapshot is valid");
         run(&mut other_world, &mut other, 60);
         assert_eq!(world.hash(), other_world.hash(), "after {steps}");
         assert_eq!(character.pose(), other.pose(), "after {steps}");
@@ -453,7 +453,7 @@ fn character_waits_to_get_up_until_nobody_stands_on_it() {
     let mut def = walker();
     def.in_world.foot_planting = FootPlanting::AsClips;
     let def = shared(def);
-    let radius = def.in_world.mover.as_ref().expect("it has one").radius;
+    let radius = def.in_world.mover.as_ref().expect("the body exists").radius;
     let mut world = level();
     let mut fallen = Character::spawn(&mut world, &def, Transform::IDENTITY);
     run(&mut world, &mut fallen, 30);

@@ -15,14 +15,14 @@ use sinew_ragdoll::{
 use sinew_scenes::mannequin::mannequin;
 
 fn built(rig: &Rig, takes: &[Take], limits: LimitSource) -> Result<RagdollDef, SettingsError> {
-    let analysis = analyze(rig).expect("a skin");
+    let analysis = analyze(rig).expect("the rig has a skin");
     let options = BuildOptions { limits, ..BuildOptions::default() };
     build_moving(rig, &analysis, takes, &options, &Settings::default()).map(|(def, _)| def)
 }
 
 /// Returns the pose of every body in character space, in every frame.
 fn poses(rig: &Rig, def: &RagdollDef, takes: &[Take]) -> Vec<Vec<Transform>> {
-    let mapping = Mapping::new(rig, def, &analyze(rig).expect("a skin").bind_model);
+    let mapping = Mapping::new(rig, def, &analyze(rig).expect("the rig has a skin").bind_model);
     let (mut model, mut poses) = (Vec::new(), Vec::new());
     for take in takes {
         for frame in 0..take.frames() {
@@ -56,7 +56,7 @@ fn beyond(joint: &RagdollJointDef, turn: Rotation) -> f32 {
 /// Checks that the clips and the bind pose are within the limits. An allowed rotation exceeds the table no further than
 /// the clips do, except at the corners of an ellipse around them.
 fn check(name: &str, rig: &Rig, takes: &[Take]) {
-    let table = built(rig, takes, LimitSource::Anatomy).expect("bones");
+    let table = built(rig, takes, LimitSource::Anatomy).expect("the rig can be built");
     let learned = built(rig, takes, LimitSource::Clips).expect("clips");
     let poses = poses(rig, &table, takes);
     let mut random = Random::new(1);
@@ -125,7 +125,7 @@ fn learned_limits_contain_the_clips_and_little_more() {
 
 /// Returns a take in which the left elbow bends from 20° to 70° and the left knee 20° the wrong way.
 fn bending(rig: &Rig) -> Take {
-    let def = built(rig, &[], LimitSource::Anatomy).expect("bones");
+    let def = built(rig, &[], LimitSource::Anatomy).expect("the rig can be built");
     let frames = 200;
     let rest: Vec<_> = rig.joints.iter().map(|joint| joint.rest).collect();
     let mut poses = Vec::new();
@@ -170,7 +170,7 @@ fn learned_hinge_margin_stays_within_the_anatomy() {
         assert!((lo + 20.0).abs() < 1.0 && hi > 5.0 && hi < 20.0, "{side} knee: range {lo}..{hi}°");
     }
     // Joints that do not move keep the table's limits.
-    let table = built(&rig, &[], LimitSource::Anatomy).expect("bones");
+    let table = built(&rig, &[], LimitSource::Anatomy).expect("the rig can be built");
     let neck = table.bodies.iter().position(|body| body.role == "neck").expect("a neck");
     assert_eq!(def.joints[neck - 1], table.joints[neck - 1]);
 }

@@ -81,7 +81,7 @@ fn contacts_are_reported_by_bone_on_request() {
     let mut def = walker_with_footsteps();
     def.in_world.tells_contacts = true;
     let def = shared(def);
-    let head = def.body_named("head").expect("it has a head");
+    let head = def.body_named("head").expect("the character has a head");
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     character.set_move(Vec3::ZERO);
@@ -117,7 +117,7 @@ fn apart(
 #[test]
 fn held_sword_stays_in_the_hand_until_released() {
     let def = shared(walker_with_footsteps());
-    let hand = def.body_named("rightHand").expect("it has hands");
+    let hand = def.body_named("rightHand").expect("the character has hands");
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     let blade = Shape::Box { half_extents: Vec3::new(0.02, 0.02, 0.3) };
@@ -150,8 +150,8 @@ fn held_sword_stays_in_the_hand_until_released() {
     assert!(world.transform(sword).translation.y < 0.1, "it lies on the floor");
     let (mut other_world, mut r) = (World::new(WorldDef::default()), Reader::new(&bytes));
     let mut other = Character::new(def, Transform::IDENTITY, 0.0);
-    other_world.load(&mut r).expect("a snapshot");
-    other.load(&mut r).expect("a snapshot");
+    other_world.load(&mut r).expect("the snapshot is valid");
+    other.load(&mut r).expect("the snapshot is valid");
     assert_eq!(other.held().collect::<Vec<_>>(), [sword]);
 }
 
@@ -198,7 +198,8 @@ fn scaled_characters_walk_fall_and_get_up() {
         let sized = shared(sized);
         let mut world = level();
         let mut character = Character::spawn(&mut world, &sized, Transform::IDENTITY);
-        let head = sized.rig.joints.iter().position(|joint| joint.name == "head").expect("it has a head");
+        let head =
+            sized.rig.joints.iter().position(|joint| joint.name == "head").expect("the character has a head");
         let high = joints(&character)[head].y;
         assert!((1.3..1.7).contains(&(high / factor)), "the head is at {high} m, scale {factor}");
         run(&mut world, &mut character, 120);
@@ -323,7 +324,7 @@ fn slide(def: &Arc<CharacterDef>, velocity: Vec3) -> f32 {
     for _ in 0..240 {
         run(&mut world, &mut character, 1);
         let mut tracks = character.animator().tracks();
-        let walk = tracks.find(|track| track.def().clip == clip).expect("it walks");
+        let walk = tracks.find(|track| track.def().clip == clip).expect("the character walks");
         let phase = walk.playhead().clip_time() / duration;
         let places = joints(&character);
         for foot in 0..2 {

@@ -182,7 +182,7 @@ fn other_humans_come_to_rest_on_the_ground() {
     for name in rigs {
         let rig = data::rig(name);
         let analysis = analyze(&rig).expect("it is a human");
-        let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("it has bones");
+        let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig has bones");
         let def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
         expect(name, &measure(name, def), [20, 5, 20]);
     }

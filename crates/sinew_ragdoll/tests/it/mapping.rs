@@ -76,7 +76,8 @@ fn pose_survives_the_round_trip_through_bodies() {
 fn joints_without_a_body_keep_their_local_pose() {
     let mut def = walker();
     // Hands without bodies keep their local pose on rotating forearms.
-    let hand = def.rig.joints.iter().position(|joint| joint.name == "leftHand").expect("it has hands");
+    let hand =
+        def.rig.joints.iter().position(|joint| joint.name == "leftHand").expect("the character has hands");
     def.ragdoll.bodies.retain(|body| !body.role.contains("Hand"));
     let kept = def.ragdoll.bodies.len();
     def.ragdoll.joints.clear();
@@ -161,11 +162,13 @@ fn body_poses_agree_for_pose_and_model_transforms() {
 #[test]
 fn an_object_beside_the_skeleton_goes_with_the_character() {
     let mut rig = mannequin().rig;
-    let at = |rig: &Rig, name: &str| rig.joints.iter().position(|joint| joint.name == name).expect("a joint");
+    let at = |rig: &Rig, name: &str| {
+        rig.joints.iter().position(|joint| joint.name == name).expect("the joint exists")
+    };
     let (root, head) = (rig.joints[at(&rig, "hips")].parent, at(&rig, "head"));
     let (mut model, rest) = (Vec::new(), rest_pose(&rig));
     local_to_model(&rig, &rest, &Affine::IDENTITY, &mut model);
-    let place = model[root.expect("a root")].inverse().point(model[head].translation);
+    let place = model[root.expect("the rig has a root")].inverse().point(model[head].translation);
     let hat = rig.joints.len();
     let rest = LocalTransform { translation: place, ..LocalTransform::default() };
     rig.joints.push(Joint { name: "hat".into(), parent: root, rest, source: hat });
@@ -173,8 +176,8 @@ fn an_object_beside_the_skeleton_goes_with_the_character() {
     let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
     let primitive = Primitive { positions, indices, ..Primitive::default() };
     rig.meshes.push(RigMesh { name: String::new(), joint: hat, skin: None, primitives: vec![primitive] });
-    let analysis = analyze(&rig).expect("a skin");
-    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("a ragdoll");
+    let analysis = analyze(&rig).expect("the rig has a skin");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the ragdoll can be built");
     let carrier = ragdoll.bodies.iter().find(|body| body.merged.contains(&hat) || body.joint == hat);
     assert!(carrier.is_some(), "no body carries the hat");
     let mapping = Mapping::new(&rig, &ragdoll, &analysis.bind_model);

@@ -78,7 +78,7 @@ fn mesh_garment_starts_where_it_is_drawn_and_is_held_at_the_top() {
 #[test]
 fn garment_bones_keep_the_bind_pose_without_gravity() {
     let moving = skirted(|_| ());
-    let bind_model = sinew_anim::analyze(&moving.rig).expect("it has a skin").bind_model;
+    let bind_model = sinew_anim::analyze(&moving.rig).expect("the rig has a skin").bind_model;
     let mut def = CharacterDef::new(moving.rig.clone(), moving.ragdoll.clone(), &bind_model);
     def.set_garments(moving.garments().source());
     let mut world = ground(Vec3::ZERO);
@@ -146,9 +146,9 @@ fn snapshot_of_a_swinging_mesh_garment_continues_identically() {
     let bytes = w.into_bytes();
     let mut reader = Reader::new(&bytes);
     let mut copy = World::new(WorldDef::default());
-    copy.load(&mut reader).expect("own snapshot");
+    copy.load(&mut reader).expect("the snapshot is valid");
     let mut again = Character::new(def.clone(), Transform::IDENTITY, 0.0);
-    again.load(&mut reader).expect("own snapshot");
+    again.load(&mut reader).expect("the snapshot is valid");
     assert_eq!(again.pose(), character.pose());
     for _ in 0..40 {
         go_on(&mut world, &mut character, 1);
@@ -161,12 +161,12 @@ fn snapshot_of_a_swinging_mesh_garment_continues_identically() {
 #[test]
 fn coarse_mesh_is_used_as_its_own_sheet() {
     let mut rig = skirted_rig([20, 8]);
-    let sheet = lay_skirt(&mut rig, 400, COARSE).expect("it can be cloth");
+    let sheet = lay_skirt(&mut rig, 400, COARSE).expect("the mesh can become cloth");
     let sheet = &rig.sheets[sheet];
     // The buckle is not connected to the rest.
     assert_eq!((sheet.joints.len(), sheet.vertices), (20 * 9, 20 * 9 + 4));
     let bare = skirted(|_| ());
-    let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
+    let analysis = sinew_anim::analyze(&rig).expect("the rig has a skin");
     let mut def = CharacterDef::new(rig.clone(), bare.ragdoll.clone(), &analysis.bind_model);
     def.set_garments(&[Garment::of_sheet(sheet)]);
     let mut world = ground(Vec3::ZERO);
@@ -195,18 +195,18 @@ fn flared(parent: Option<&str>) -> CharacterDef {
     skin.inverse_bind.push(above.map_or(Affine::IDENTITY, |slot| skin.inverse_bind[slot]));
     skin.joints.push(source);
     let slot = skin.joints.len() as u16 - 1;
-    let skirt = rig.meshes.iter_mut().find(|mesh| mesh.name == "Skirt").expect("it is there");
+    let skirt = rig.meshes.iter_mut().find(|mesh| mesh.name == "Skirt").expect("the named item exists");
     let primitive = &mut skirt.primitives[0];
     for (vertex, place) in primitive.positions.iter().enumerate().filter(|(_, place)| place.y < 0.65) {
         assert!(place.y > 0.4, "the vertex must stay at the skirt's height");
         primitive.joints[vertex] = [slot, 0, 0, 0];
         primitive.weights[vertex] = [1.0, 0.0, 0.0, 0.0];
     }
-    let sheet = lay_skirt(&mut rig, 400, COARSE).expect("it can be cloth");
+    let sheet = lay_skirt(&mut rig, 400, COARSE).expect("the mesh can become cloth");
     let flare = rig.sheets[sheet].joints.iter().filter(|&&at| rig.joints[at].parent == Some(source)).count();
     assert!(flare >= 20, "only {flare} vertices are weighted to the particles");
     let garment = Garment::of_sheet(&rig.sheets[sheet]);
-    let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
+    let analysis = sinew_anim::analyze(&rig).expect("the rig has a skin");
     let mut def = CharacterDef::new(rig, skirted(|_| ()).ragdoll.clone(), &analysis.bind_model);
     def.set_garments(&[garment]);
     def
@@ -269,7 +269,7 @@ fn missing_garments_are_created_again() {
         let mut dressed = def.clone();
         dressed.set_garments(&garments);
         let mut copy = Character::new(Arc::new(dressed), Transform::IDENTITY, 0.0);
-        copy.load(&mut Reader::new(w.as_bytes())).expect("it was saved");
+        copy.load(&mut Reader::new(w.as_bytes())).expect("the saved state is valid");
         go_on(&mut other, &mut copy, 2);
         let group = other.particles(copy.garments()[0]);
         assert_eq!(group.positions().len(), 20 * 9);
@@ -282,7 +282,7 @@ fn missing_garments_are_created_again() {
 fn on_a_spring(is_sprung: bool) -> (CharacterDef, usize) {
     let mut rig = skirted_rig([20, 8]);
     let (hips, bone) = (joint(&rig, "hips"), rig.joints.len());
-    let bind_model = sinew_anim::analyze(&rig).expect("it has a skin").bind_model;
+    let bind_model = sinew_anim::analyze(&rig).expect("the rig has a skin").bind_model;
     rig.joints.push(Joint {
         name: "band".into(),
         parent: Some(hips),
@@ -294,14 +294,14 @@ fn on_a_spring(is_sprung: bool) -> (CharacterDef, usize) {
     let new = skin.joints.len() as u16;
     skin.joints.push(bone);
     skin.inverse_bind.push(bind_model[hips].inverse());
-    let skirt = rig.meshes.last_mut().expect("it has a skirt");
+    let skirt = rig.meshes.last_mut().expect("the rig has a skirt");
     skirt.primitives[0].joints.iter_mut().flatten().filter(|at| **at == slot as u16).for_each(|at| *at = new);
-    lay_skirt(&mut rig, 400, COARSE).expect("it can be cloth");
+    lay_skirt(&mut rig, 400, COARSE).expect("the mesh can become cloth");
     let garment = Garment::of_sheet(&rig.sheets[0]);
     let bare = skirted(|_| ());
-    let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
+    let analysis = sinew_anim::analyze(&rig).expect("the rig has a skin");
     let mut def = CharacterDef::new(rig, bare.ragdoll.clone(), &analysis.bind_model);
-    def.set_motions(bare.motions().clone()).expect("its clips can be played");
+    def.set_motions(bare.motions().clone()).expect("the file's clips can be played");
     let swinging = SpringBone {
         joint: bone,
         tail: Vec3::NEG_Y * 0.3,
@@ -354,12 +354,12 @@ fn cloth_below_spring_bones_is_drawn_at_its_particles() {
 fn legs_do_not_pass_through_a_coarse_mesh() {
     let deepest_face = |spacing: f32| {
         let mut rig = skirted_rig([10, 4]);
-        let sheet = lay_skirt(&mut rig, 400, spacing).expect("it can be cloth");
+        let sheet = lay_skirt(&mut rig, 400, spacing).expect("the mesh can become cloth");
         let garment = Garment { spacing, ..Garment::of_sheet(&rig.sheets[sheet]) };
         let bare = skirted(|_| ());
-        let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
+        let analysis = sinew_anim::analyze(&rig).expect("the rig has a skin");
         let mut def = CharacterDef::new(rig, bare.ragdoll.clone(), &analysis.bind_model);
-        def.set_motions(bare.motions().clone()).expect("its clips can be played");
+        def.set_motions(bare.motions().clone()).expect("the file's clips can be played");
         def.set_garments(&[garment]);
         let mut world = ground(WorldDef::default().gravity);
         let mut character = Character::spawn(&mut world, &Arc::new(def), Transform::IDENTITY);

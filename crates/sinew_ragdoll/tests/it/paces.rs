@@ -13,7 +13,7 @@ use std::sync::Arc;
 fn runner() -> Arc<CharacterDef> {
     let mut def = walker();
     let MotionSet { mut clips, looped, .. } = def.motions().clone();
-    let walk = looped.expect("it walks");
+    let walk = looped.expect("the character walks");
     let run = drills::running();
     let step = |clip: usize, time: f32, side: &str| {
         (clip, ClipEvent { payload: side.to_owned(), ..ClipEvent::new(time, "footstep") })
@@ -147,7 +147,7 @@ fn run_in_place_without_known_speed_is_ignored() {
     let clips: Vec<Clip> = def.motions().clips.clone();
     let faster = vec![(1, Locomotion::InPlace), (0, Locomotion::Forward { speed: 0.2 })];
     let motions = MotionSet { clips, faster, ..def.motions().clone() };
-    def.set_motions(motions).expect("they can be played");
+    def.set_motions(motions).expect("the clips can be played");
     let def = shared(def);
     let mut world = level();
     let mut hero = Character::spawn(&mut world, &def, Transform::IDENTITY);

@@ -97,7 +97,7 @@ impl Pops {
             if step == BEFORE {
                 let mut limp = animated.clone();
                 limp.go_limp(&mut world);
-                let bodies = &limp.ragdoll().expect("it is limp").bodies;
+                let bodies = &limp.ragdoll().expect("the character is limp").bodies;
                 let velocity = |&body| [world.velocity(body).angular, world.velocity(body).linear];
                 given = bodies.iter().map(velocity).collect();
             }

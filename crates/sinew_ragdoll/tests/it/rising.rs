@@ -29,7 +29,7 @@ fn lives(contact: GroundContact, push: Vec3) -> (Baked, RisingQuality, f32) {
     let mut def = walker();
     def.ground_contact = contact;
     let def = shared(def);
-    let body = def.body_named("chest").expect("it has a chest");
+    let body = def.body_named("chest").expect("the character has a chest");
     let (bodies, hits) = ([floor()], [BakeHit { time: 0.8, body, impulse: push }]);
     let input = BakeInput { bodies: &bodies, hits: &hits, seconds: 9.0, ..BakeInput::new(def.clone()) };
     let baked = bake(&input);
@@ -67,8 +67,10 @@ fn ground_contact_keeps_skin_above_the_floor_and_feet_in_place() {
 #[test]
 fn sword_stays_in_its_hand_in_a_mirrored_get_up() {
     let def = shared(armed_walker());
-    let held = |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("it is there");
-    let body = def.body_named("chest").expect("it has a chest");
+    let held = |name: &str| {
+        def.rig.joints.iter().position(|joint| joint.name == name).expect("the named item exists")
+    };
+    let body = def.body_named("chest").expect("the character has a chest");
     let mut frames = 0;
     for push in PUSHES {
         let (bodies, hits) = ([floor()], [BakeHit { time: 0.8, body, impulse: push }]);
@@ -99,7 +101,7 @@ fn only_feet_that_bear_the_body_slide() {
     let def = shared(walker());
     let bodies = [floor()];
     let input = BakeInput { bodies: &bodies, seconds: 0.2, ..BakeInput::new(def.clone()) };
-    let joint = |name: &str| def.ragdoll.bodies[def.body_named(name).expect("it is there")].joint;
+    let joint = |name: &str| def.ragdoll.bodies[def.body_named(name).expect("the named item exists")].joint;
     let height = |pose: &[LocalTransform], joint: usize| {
         let mut model = Vec::new();
         local_to_model(&def.rig, pose, &Affine::IDENTITY, &mut model);
@@ -217,7 +219,7 @@ fn parts_stay_out_of_a_wall_beside_the_body() {
         def.ground_contact = ground_contact;
         def.in_world.foot_planting = foot_planting;
         let def = shared(def);
-        let chest = def.body_named("chest").expect("it has one");
+        let chest = def.body_named("chest").expect("the body exists");
         let mut deepest = 0.0;
         for side in 0..24 {
             let turn = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::TAU / 24.0 * side as f32);
@@ -256,9 +258,9 @@ fn get_up_from_another_side_is_reported() {
         (def.getting_ready, def.ground_contact) = (getting_ready, GroundContact::Enforced);
         let supine = def.motions().get_ups[0];
         let motions = MotionSet { get_ups: vec![supine], ..def.motions().clone() };
-        def.set_motions(motions).expect("they play");
+        def.set_motions(motions).expect("the clips can be played");
         let def = shared(def);
-        let body = def.body_named("chest").expect("it has a chest");
+        let body = def.body_named("chest").expect("the character has a chest");
         let (bodies, hits) = ([floor()], [BakeHit { time: 0.8, body, impulse: Vec3::Z * 70.0 }]);
         let input = BakeInput { bodies: &bodies, hits: &hits, seconds: 9.0, ..BakeInput::new(def) };
         let rising = measure_rising(&input, &bake(&input), Some(0.0));

@@ -115,11 +115,11 @@ impl Game {
 
     fn load(&mut self, frame: &Frame) {
         let mut reader = Reader::new(&frame.bytes);
-        self.world.load(&mut reader).expect("a snapshot");
+        self.world.load(&mut reader).expect("the snapshot is valid");
         self.cast.clear();
         for &name in &frame.names {
             let mut actor = Character::new(self.def.clone(), Transform::IDENTITY, 0.0);
-            actor.load(&mut reader).expect("a snapshot");
+            actor.load(&mut reader).expect("the snapshot is valid");
             self.cast.push((name, actor));
         }
     }

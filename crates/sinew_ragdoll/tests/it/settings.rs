@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 fn with(settings: &Settings) -> Result<RagdollDef, SettingsError> {
     let rig = mannequin().rig;
-    let analysis = analyze(&rig).expect("a skin");
+    let analysis = analyze(&rig).expect("the rig has a skin");
     build_with(&rig, &analysis, &BuildOptions::default(), settings).map(|(def, _)| def)
 }
 
@@ -24,8 +24,8 @@ fn of_bone(name: &str, bone: BoneSettings) -> Settings {
 
 fn plain() -> RagdollDef {
     let rig = mannequin().rig;
-    let analysis = analyze(&rig).expect("a skin");
-    build(&rig, &analysis, &BuildOptions::default()).expect("bones").0
+    let analysis = analyze(&rig).expect("the rig has a skin");
+    build(&rig, &analysis, &BuildOptions::default()).expect("the rig can be built").0
 }
 
 fn body(def: &RagdollDef, role: &str) -> usize {
@@ -46,14 +46,14 @@ fn shape_settings_change_kind_and_size() {
     let box_ = BoneSettings { shape: Some(ShapeWish::Box), ..BoneSettings::default() };
     let mut settings = of_bone("head", sphere);
     settings.bones.push(("lowerArm".into(), box_));
-    let (def, before) = (with(&settings).expect("fits"), plain());
+    let (def, before) = (with(&settings).expect("the number fits"), plain());
     let shape = |def: &RagdollDef, role: &str| def.bodies[body(def, role)].shape.clone();
     assert!(matches!(shape(&def, "head"), Shape::Sphere { .. }), "{:?}", shape(&def, "head"));
     for role in ["leftLowerArm", "rightLowerArm"] {
         assert!(matches!(shape(&def, role), Shape::Box { .. }), "{role}");
     }
     assert_eq!(shape(&def, "leftFoot"), shape(&before, "leftFoot"));
-    let smaller = with(&of_bone("head", BoneSettings { scale: None, ..sphere })).expect("fits");
+    let smaller = with(&of_bone("head", BoneSettings { scale: None, ..sphere })).expect("the number fits");
     let (large, small) = (shape(&def, "head"), shape(&smaller, "head"));
     assert!((large.volume() / small.volume() - 3.375).abs() < 0.01, "{large:?} {small:?}");
 }
@@ -61,15 +61,16 @@ fn shape_settings_change_kind_and_size() {
 #[test]
 fn mass_settings_change_masses() {
     let heavy = BoneSettings { mass: Some(3.0), ..BoneSettings::default() };
-    let (def, before) = (with(&of_bone("leftHand", heavy)).expect("weighs"), plain());
+    let (def, before) = (with(&of_bone("leftHand", heavy)).expect("the settings are valid"), plain());
     let hand = body(&def, "leftHand");
     let gained = 3.0 - before.bodies[hand].mass.mass;
     assert!((def.bodies[hand].mass.mass - 3.0).abs() < 1e-5);
     assert!((def.total_mass - before.total_mass - gained).abs() < 1e-3);
     let settings = Settings { mass: Some(60.0), ..of_bone("leftHand", heavy) };
-    let def = with(&settings).expect("weighs");
+    let def = with(&settings).expect("the settings are valid");
     assert!((def.total_mass - 60.0).abs() < 1e-3 && (def.bodies[hand].mass.mass - 3.0).abs() < 1e-5);
-    let woman = with(&Settings { sex: Some(Sex::Female), ..Settings::default() }).expect("weighs");
+    let woman =
+        with(&Settings { sex: Some(Sex::Female), ..Settings::default() }).expect("the settings are valid");
     let thigh = |def: &RagdollDef| def.bodies[body(def, "leftUpperLeg")].mass.mass / def.total_mass;
     assert!((thigh(&woman) - 0.1478).abs() < 2e-3, "{}", thigh(&woman));
 }
@@ -126,7 +127,7 @@ fn settings_that_a_joint_or_a_total_rules_out_are_refused() {
 #[test]
 fn bones_can_be_dropped_and_kept() {
     let rig = mannequin().rig;
-    let analysis = analyze(&rig).expect("a skin");
+    let analysis = analyze(&rig).expect("the rig has a skin");
     let before = plain();
     let drop = BoneSettings { body: Some(BodyWish::Drop), ..BoneSettings::default() };
     let def = with(&of_bone("leftLowerArm", drop)).expect("goes");
@@ -150,9 +151,9 @@ fn bones_can_be_dropped_and_kept() {
 #[test]
 fn merged_bone_can_be_kept() {
     let rig = crate::data::rig("mesh2motion_human_rigify.glb");
-    let analysis = analyze(&rig).expect("a skin");
+    let analysis = analyze(&rig).expect("the rig has a skin");
     let options = BuildOptions::default();
-    let (before, _) = build(&rig, &analysis, &options).expect("bones");
+    let (before, _) = build(&rig, &analysis, &options).expect("the rig can be built");
     let merged = before.bodies.iter().flat_map(|body| body.merged.iter().map(move |&joint| (body, joint)));
     // Find a merged bone with skin of its own.
     let skinned = |joint: usize| rig.skins.iter().any(|skin| skin.joints.contains(&joint));
@@ -227,23 +228,24 @@ fn unit_height_and_up_are_applied() {
 fn roles_and_ignored_bones_are_applied() {
     let of = |name: &str| mannequin().rig.joints.iter().position(|joint| joint.name == name).expect(name);
     let chest = BoneSettings { role: Some(Role::UpperChest), ..BoneSettings::default() };
-    let (def, before) = (with(&of_bone("chest", chest)).expect("a body"), plain());
+    let (def, before) = (with(&of_bone("chest", chest)).expect("the body exists"), plain());
     assert_eq!(def.bodies[body(&def, "upperChest")].joint, of("chest"));
     assert_eq!((def.bodies.len(), def.total_mass), (before.bodies.len(), before.total_mass));
     assert!(def.bodies.iter().all(|body| body.role != "chest"));
     let hand = before.bodies[body(&before, "leftHand")].bone.clone();
-    let def = with(&Settings { ignore: vec![hand.clone()], ..Settings::default() }).expect("a body");
+    let def = with(&Settings { ignore: vec![hand.clone()], ..Settings::default() }).expect("the body exists");
     assert!(def.bodies.iter().all(|body| body.bone != hand && body.role != "leftHand"));
     let forearm = |def: &RagdollDef| def.bodies[body(def, "leftLowerArm")].shape.volume();
     assert!(forearm(&def) < 1.1 * forearm(&before), "the hand's skin must not affect the forearm's shape");
     // Applying settings to an analysis that already contains them changes nothing.
     let rig = mannequin().rig;
     let settings = Settings { unit: Some(Unit::Height(1.2)), ..of_bone("chest", chest) };
-    let once = analyze_with(&rig, &analyze(&rig).expect("a skin"), &settings).expect("a body");
+    let once =
+        analyze_with(&rig, &analyze(&rig).expect("the rig has a skin"), &settings).expect("the body exists");
     assert_eq!(analyze_with(&rig, &once, &settings), Ok(once.clone()));
     let options = BuildOptions::default();
-    let built = |analysis| build_with(&rig, analysis, &options, &settings).expect("a body").0;
-    assert_eq!(built(&once), built(&analyze(&rig).expect("a skin")));
+    let built = |analysis| build_with(&rig, analysis, &options, &settings).expect("the body exists").0;
+    assert_eq!(built(&once), built(&analyze(&rig).expect("the rig has a skin")));
     assert!((once.height - 1.2).abs() < 1e-5, "{}", once.height);
 }
 
@@ -257,7 +259,7 @@ fn any_roles_give_a_ragdoll_or_an_error() {
     let mut random = sinew_math::Random::new(6);
     let (mut ragdolls, mut refusals) = (0, 0);
     for rig in &rigs {
-        let analysis = analyze(rig).expect("a skin");
+        let analysis = analyze(rig).expect("the rig has a skin");
         for _ in 0..12 {
             let mut settings = Settings::default();
             for _ in 0..=random.index(3) {

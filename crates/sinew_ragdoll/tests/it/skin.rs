@@ -27,8 +27,8 @@ impl Subject {
     }
 
     fn of(rig: Rig) -> Self {
-        let analysis = analyze(&rig).expect("a skin");
-        let (def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
+        let analysis = analyze(&rig).expect("the rig has a skin");
+        let (def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig can be built");
         Self { rig, analysis, def }
     }
 
@@ -110,7 +110,8 @@ fn torn_skin_is_reported() {
     assert!(torn.evidence.contains("leftLowerArm"), "{}", torn.evidence);
     // The doctor reports the flaw with a remedy, and does not claim a repair.
     let found = doctor(&Repair { skin: flaws, ..Repair::new(subject.def) });
-    let finding = found.iter().find(|finding| finding.code == Code::SkinTorn).expect("a finding");
+    let finding =
+        found.iter().find(|finding| finding.code == Code::SkinTorn).expect("the doctor reports a finding");
     assert!(!finding.fix.is_empty() && !finding.fixed, "{finding:?}");
 }
 
@@ -200,9 +201,9 @@ fn character_drawn_in_another_size_is_reported() {
 #[test]
 fn ears_bound_in_another_pose_do_not_change_its_size() {
     let mut rig = mannequin().rig;
-    let analysis = analyze(&rig).expect("a skin");
+    let analysis = analyze(&rig).expect("the rig has a skin");
     let head = analysis.joint_with(Role::Head).expect("a head");
-    let slot = rig.skins[0].joints.iter().position(|&joint| joint == head).expect("it moves skin");
+    let slot = rig.skins[0].joints.iter().position(|&joint| joint == head).expect("the joint moves skin");
     let (ears, source) = (rig.skins[0].joints.len(), rig.joints.len());
     grown(&mut rig, Role::Head, Vec3::Y * 0.25, Vec3::new(0.05, 0.12, 0.02));
     let lying =
@@ -211,7 +212,7 @@ fn ears_bound_in_another_pose_do_not_change_its_size() {
     let inverse_bind = rig.skins[0].inverse_bind[slot];
     rig.skins[0].joints.push(source);
     rig.skins[0].inverse_bind.push(inverse_bind);
-    let ear = u16::try_from(ears).expect("few");
+    let ear = u16::try_from(ears).expect("the count fits");
     let grown = rig.meshes.last_mut().expect("it has just grown");
     grown.primitives[0].joints.iter_mut().for_each(|joints| joints[0] = ear);
     let subject = Subject::of(rig);
@@ -335,7 +336,7 @@ fn sword_skinned_to_a_hand_rests_on_the_floor() {
 
 /// Adds a box as an unskinned mesh on a new bone below a role's, with its centre `off` the joint (model space, metres).
 fn carried(rig: &mut Rig, name: &str, role: Role, off: Vec3, half: Vec3) {
-    let analysis = analyze(rig).expect("a skin");
+    let analysis = analyze(rig).expect("the rig has a skin");
     let carrier = analysis.joint_with(role).expect("the role");
     let source = rig.joints.len();
     let rest = LocalTransform::default();
@@ -381,9 +382,9 @@ fn cap_joins_the_head_and_pack_and_sword_get_bodies() {
 
 /// Adds a box to the skin of a role, with its centre `off` the joint (model space, metres).
 fn grown(rig: &mut Rig, role: Role, off: Vec3, half: Vec3) {
-    let analysis = analyze(rig).expect("a skin");
+    let analysis = analyze(rig).expect("the rig has a skin");
     let joint = analysis.joint_with(role).expect("the role");
-    let slot = rig.skins[0].joints.iter().position(|&at| at == joint).expect("it moves skin");
+    let slot = rig.skins[0].joints.iter().position(|&at| at == joint).expect("the joint moves skin");
     let middle = analysis.bind_model[joint].translation + off;
     let corner = |i: u32| {
         let side = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
@@ -392,7 +393,7 @@ fn grown(rig: &mut Rig, role: Role, off: Vec3, half: Vec3) {
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let part = Primitive {
         positions: (0..8).map(corner).collect(),
-        joints: vec![[u16::try_from(slot).expect("few"), 0, 0, 0]; 8],
+        joints: vec![[u16::try_from(slot).expect("the count fits"), 0, 0, 0]; 8],
         weights: vec![[1.0, 0.0, 0.0, 0.0]; 8],
         indices: faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect(),
         ..Primitive::default()

@@ -46,8 +46,9 @@ fn height(world: &World, at: Vec3) -> f32 {
 fn gets_up(def: &Arc<CharacterDef>, ground: &[BodyDef], push: Vec3) -> [f32; 3] {
     let mut world = world_of(ground);
     let mut character = Character::new(def.clone(), Transform::IDENTITY, 0.2);
-    character.hit(&mut world, def.body_named("chest").expect("it has a chest"), push);
-    let joint = |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("a joint");
+    character.hit(&mut world, def.body_named("chest").expect("the character has a chest"), push);
+    let joint =
+        |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("the joint exists");
     let watched =
         ["hips", "head", "leftHand", "rightHand", "leftLowerLeg", "rightLowerLeg", "leftFoot", "rightFoot"];
     let heavy = ["hips", "leftFoot", "rightFoot"].map(joint);
@@ -126,7 +127,8 @@ fn soles(def: &CharacterDef, world: &World, character: &Character) -> [[f32; 2];
     let (mut model, mut stands) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
     local_to_model(&def.rig, def.rest(), &def.mapping().character_from_model(), &mut stands);
-    let joint = |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("a joint");
+    let joint =
+        |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("the joint exists");
     [["leftFoot", "leftToes"], ["rightFoot", "rightToes"]].map(|foot| {
         foot.map(joint).map(|joint| {
             let place = model[joint].translation;
@@ -144,7 +146,7 @@ fn held(def: &CharacterDef, world: &World, character: &Character) -> [f32; 2] {
 /// Returns a pushed mannequin that has got up and stood for a second and a half.
 fn stands_again(def: &Arc<CharacterDef>, world: &mut World, start: Transform, push: Vec3) -> Character {
     let mut character = Character::new(def.clone(), start, 0.0);
-    character.hit(world, def.body_named("chest").expect("it has a chest"), push);
+    character.hit(world, def.body_named("chest").expect("the character has a chest"), push);
     let mut up = 0;
     for _ in 0..1200 {
         world.step();
@@ -202,7 +204,8 @@ fn both_feet_touch_the_ground_across_an_edge() {
             let held = held(&def, &world, &character);
             worst = held.into_iter().fold(worst, |worst, over| max(worst, over.abs()));
             let knee = |name: &str| {
-                let joint = def.rig.joints.iter().position(|joint| joint.name == name).expect("a knee");
+                let joint =
+                    def.rig.joints.iter().position(|joint| joint.name == name).expect("the rig has a knee");
                 character.pose()[joint].rotation.angle_to(def.rest()[joint].rotation)
             };
             bent += u32::from(max(knee("leftLowerLeg"), knee("rightLowerLeg")) > 0.5);
@@ -218,7 +221,7 @@ fn planted_feet_survive_snapshots_and_hand_over() {
     let def = stander();
     let mut world = world_of(&stairs());
     let mut character = Character::new(def.clone(), Transform::IDENTITY, 0.0);
-    character.hit(&mut world, def.body_named("chest").expect("it has a chest"), PUSHES[0]);
+    character.hit(&mut world, def.body_named("chest").expect("the character has a chest"), PUSHES[0]);
     // Snapshots restored while getting up and once standing continue identically.
     let (mut rising, mut up) = (0, 0);
     while up < 90 {
@@ -246,7 +249,7 @@ fn planted_feet_survive_snapshots_and_hand_over() {
     local_to_model(&def.rig, character.pose(), &Affine::IDENTITY, &mut model);
     def.mapping().bodies_from_model(&model, character.world_from_character(), &mut shown);
     character.go_limp(&mut world);
-    let bodies = &character.ragdoll().expect("it is limp").bodies;
+    let bodies = &character.ragdoll().expect("the character is limp").bodies;
     for ((&body, def), shown) in bodies.iter().zip(&def.ragdoll.bodies).zip(&shown) {
         let speed = world.velocity(body).linear.length();
         assert!(speed < 0.02, "{}: {speed} m/s", def.role);

@@ -269,7 +269,7 @@ fn avatar_tips_stay_still_for_a_minute() {
     let mut rig = mannequin().rig;
     let hair = strands(&mut rig);
     let analysis = analyze(&rig).expect("the mannequin has a skin");
-    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig can be built");
     let mut def = CharacterDef::new(rig.clone(), ragdoll, &analysis.bind_model);
     let (mut random, mut worst) = (Random::new(60), [0.0_f32; 2]);
     for case in 0..6 {

@@ -40,7 +40,7 @@ fn steps_of(events: &[CharacterEvent]) -> u32 {
 #[test]
 fn powered_character_steps_to_catch_a_push() {
     let def = puppet();
-    let chest = def.body_named("chest").expect("it has a chest");
+    let chest = def.body_named("chest").expect("the character has a chest");
     for way in [Vec3::X, -Vec3::X, Vec3::Z, -Vec3::Z, Vec3::new(0.7, 0.0, 0.7)] {
         let (mut world, mut character) = powered(&def, false, 0);
         let before = character.world_from_character().translation;
@@ -64,7 +64,7 @@ fn powered_character_steps_to_catch_a_push() {
 fn planted_foot_stays_while_the_other_steps() {
     let def = puppet();
     let (chest, feet) = (
-        def.body_named("chest").expect("it has a chest"),
+        def.body_named("chest").expect("the character has a chest"),
         ["leftFoot", "rightFoot"].map(|foot| def.body_named(foot).expect("it has feet")),
     );
     let (mut world, mut character) = powered(&def, false, 0);
@@ -89,7 +89,7 @@ fn planted_foot_stays_while_the_other_steps() {
 #[test]
 fn light_push_needs_no_step_and_heavy_push_fells() {
     let def = puppet();
-    let chest = def.body_named("chest").expect("it has a chest");
+    let chest = def.body_named("chest").expect("the character has a chest");
     let (mut world, mut character) = powered(&def, false, 0);
     character.hit(&mut world, chest, Vec3::Z * 6.0);
     let events = run(&mut world, &mut character, 90);
@@ -123,8 +123,8 @@ fn stumble_survives_a_snapshot() {
         let mut reader = Reader::new(&bytes);
         let mut other_world = World::new(WorldDef::default());
         let mut other = Character::new(def.clone(), Transform::IDENTITY, 0.0);
-        other_world.load(&mut reader).expect("a snapshot");
-        other.load(&mut reader).expect("a snapshot");
+        other_world.load(&mut reader).expect("the snapshot is valid");
+        other.load(&mut reader).expect("the snapshot is valid");
         run(&mut other_world, &mut other, 60);
         assert_eq!(world.hash(), other_world.hash(), "after {steps}");
     }
@@ -172,7 +172,7 @@ fn random_pushes_are_mostly_survived() {
             for _ in 0..180 {
                 meter.before_step(&world);
                 world.step();
-                let ragdoll = character.ragdoll().expect("it has bodies").clone();
+                let ragdoll = character.ragdoll().expect("the ragdoll has bodies").clone();
                 meter.after_driven_step(&world, &ragdoll);
                 character.update(&mut world);
                 events.extend_from_slice(character.events());
@@ -258,7 +258,7 @@ fn outside(character: &Character, point: Vec3) -> Option<f32> {
 fn balance_forces_act_near_the_soles() {
     const OVER: usize = 6;
     let def = puppet();
-    let chest = def.body_named("chest").expect("it has a chest");
+    let chest = def.body_named("chest").expect("the character has a chest");
     for (size, bar) in [(20.0, 0.05), (60.0, 0.12), (100.0, 0.35)] {
         let (mut far, mut slip) = (Vec::new(), Vec::new());
         for way in 0..8 {

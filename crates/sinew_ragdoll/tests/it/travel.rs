@@ -21,7 +21,7 @@ fn travelling(path: Path, locomotion: Locomotion) -> (Arc<CharacterDef>, Cycle) 
     let mut def = walker();
     let mut motions = MotionSet { locomotion, ..def.motions().clone() };
     motions.clips[0] = cycle.clip.clone();
-    def.set_motions(motions).expect("it can be played");
+    def.set_motions(motions).expect("the clip can be played");
     (shared(def), cycle)
 }
 
@@ -76,7 +76,7 @@ fn fall_around_the_seam_keeps_the_walking_speed() {
             let mut world = world();
             let mut character = Character::new(def.clone(), Transform::IDENTITY, phase);
             character.go_limp(&mut world);
-            let bodies = &character.ragdoll().expect("it is limp").bodies;
+            let bodies = &character.ragdoll().expect("the character is limp").bodies;
             let velocity = |id| world.velocity(id).linear;
             let fastest = bodies.iter().map(|&id| velocity(id).length()).fold(0.0, max);
             assert!(fastest < 5.0, "{locomotion:?} at {phase} s: a joint moves at {fastest} m/s");
@@ -106,7 +106,7 @@ fn clip_that_begins_elsewhere_starts_at_the_place_of_the_character() {
         for place in values.chunks_exact_mut(3) {
             place.iter_mut().zip(beside.to_array()).for_each(|(number, by)| *number += by);
         }
-        def.set_motions(motions).expect("it can be played");
+        def.set_motions(motions).expect("the clip can be played");
         let mut world = World::new(WorldDef::default());
         // Add a platform of 1 m under the character's position alone.
         world.add_body(&BodyDef {

@@ -136,7 +136,7 @@ impl Subject {
         if chance(&mut random, "controls") {
             rig = with_controls(&rig, analysis, &mut random);
         }
-        let convention = usize::try_from(seed).expect("few") % CONVENTIONS.len();
+        let convention = usize::try_from(seed).expect("the count fits") % CONVENTIONS.len();
         // A clip fits only one hierarchy, unit and choice of axes.
         if !self.clips.is_empty() && chance(&mut random, "shifted clips") {
             let size = analysis.height / analysis.unit_scale;
@@ -243,7 +243,7 @@ fn differences(plain: &RagdollDef, other: &RagdollDef, place: &[usize]) -> Vec<S
 /// Returns the flaws of the variants of a rig, one line each.
 fn flaws(number: u64, subject: &Subject, count: u64) -> Vec<String> {
     let name = subject.name;
-    let analysis = analyze(&subject.rig).expect("a skin");
+    let analysis = analyze(&subject.rig).expect("the rig has a skin");
     let (plain, _) = built(&subject.rig, &BuildOptions::default());
     let mut falls = Falls::of(&plain);
     let mut wrong = Vec::new();
@@ -252,8 +252,8 @@ fn flaws(number: u64, subject: &Subject, count: u64) -> Vec<String> {
     for seed in (first..first + count).map(|seed| seed % ALL) {
         let Variant { rig, hints, place, changes_made } = subject.variant(&analysis, seed);
         let what = format!("{name}, variant {seed} ({changes_made})");
-        let seen = analyze_hinted(&rig, &hints).expect("a skin");
-        let (def, _) = build(&rig, &seen, &BuildOptions::default()).expect("a ragdoll");
+        let seen = analyze_hinted(&rig, &hints).expect("the rig has a skin");
+        let (def, _) = build(&rig, &seen, &BuildOptions::default()).expect("the ragdoll can be built");
         check_sound(&what, &def);
         let differences = differences(&plain, &def, &place);
         let flaw =

@@ -38,7 +38,7 @@ fn overlapping_volumes_count_once() {
     let half = Vec3::new(0.5, 1.0, 1.5);
     let one = triangles(Vec3::ZERO, half);
     let is = |triangles: &[[Vec3; 3]], wanted: f32| {
-        let volume = enclosed(triangles).expect("it is closed");
+        let volume = enclosed(triangles).expect("the mesh is closed");
         assert!((volume / wanted - 1.0).abs() < 0.02, "volume {volume}, expected {wanted}");
     };
     is(&one, 6.0);
@@ -76,12 +76,13 @@ fn worm(names: [&str; 3]) -> Rig {
         rig.joints.push(Joint { name: name.into(), parent, rest, source: i });
         skin.joints.push(i);
         skin.inverse_bind.push(Affine { translation: -at, ..Affine::IDENTITY });
-        let first = u32::try_from(part.positions.len()).expect("few");
+        let first = u32::try_from(part.positions.len()).expect("the count fits");
         let (corners, faces) = block(at + Vec3::Z * 0.2, Vec3::new(0.3, 0.3, 0.4));
         part.positions.extend(corners);
-        part.joints.extend([[u16::try_from(i).expect("few"), 0, 0, 0]; 8]);
+        part.joints.extend([[u16::try_from(i).expect("the count fits"), 0, 0, 0]; 8]);
         part.weights.extend([[1.0, 0.0, 0.0, 0.0]; 8]);
-        part.indices.extend(faces.as_flattened().iter().map(|&i| first + u32::try_from(i).expect("few")));
+        part.indices
+            .extend(faces.as_flattened().iter().map(|&i| first + u32::try_from(i).expect("the count fits")));
     }
     rig.skins = vec![skin];
     rig.meshes = vec![RigMesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![part] }];

@@ -24,7 +24,7 @@ const APART: f32 = 1.8;
 pub fn humanoid() -> RagdollDef {
     let rig = mannequin().rig;
     let analysis = analyze(&rig).expect("the mannequin has a skin");
-    let (mut def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
+    let (mut def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig can be built");
     for body in &mut def.bodies {
         // Masses stay unchanged, because other engines have no tapered capsules.
         if let Shape::TaperedCapsule { half_height, radius_bottom, radius_top } = body.shape {

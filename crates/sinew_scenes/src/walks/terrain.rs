@@ -26,7 +26,7 @@ fn corners(mesh: &TriangleMesh, world_from_mesh: &Transform) -> Vec<[Vec3; 3]> {
 }
 
 fn level(mesh: &TriangleMesh, world_from_mesh: Transform) -> BodyDef {
-    let body = mesh.to_body().expect("it has triangles");
+    let body = mesh.to_body().expect("the mesh has triangles");
     BodyDef { position: world_from_mesh.translation, rotation: world_from_mesh.rotation, ..body }
 }
 

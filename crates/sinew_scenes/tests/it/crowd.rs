@@ -4,7 +4,7 @@ use sinew::math::{Reader, Writer};
 use sinew_scenes::scenes::{Instance, find};
 
 fn started(assignments: &[&str]) -> Instance {
-    let scene = find("crowd").expect("the registry has it");
+    let scene = find("crowd").expect("the scene is registered");
     let mut settings = scene.settings();
     assignments.iter().for_each(|assignment| settings.assign(assignment).expect("a setting of it"));
     scene.start(&settings)
@@ -35,14 +35,14 @@ fn saved_crowd_continues_equally() {
         }
         let saved = bytes(&run);
         let mut other = started(&["n=6", "waves=2"]);
-        other.load(&mut Reader::new(&saved)).expect("it was just saved");
+        other.load(&mut Reader::new(&saved)).expect("the saved state is valid");
         assert_eq!(bytes(&other), saved, "at step {moment}");
         for _ in 0..90 {
             run.step();
             other.step();
         }
         assert_eq!(bytes(&other), bytes(&run), "from step {moment}");
-        run.load(&mut Reader::new(&saved)).expect("it was just saved");
+        run.load(&mut Reader::new(&saved)).expect("the saved state is valid");
         for length in (0..saved.len()).step_by(1_009) {
             assert!(other.load(&mut Reader::new(&saved[..length])).is_err(), "{length} bytes");
         }

@@ -7,7 +7,7 @@ const HUMANOID: &str =
     concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/robots/mujoco_humanoid.xml");
 
 fn unmet(pose: u32, gravity_factor: f32) -> Vec<Metric> {
-    let scene = find("mjcf_drop").expect("it can be found");
+    let scene = find("mjcf_drop").expect("the scene is registered");
     let mut settings = scene.settings();
     settings.assign(&format!("file={HUMANOID}")).expect("the humanoid can be read");
     settings.assign(&format!("pose={pose}")).expect("there is such a pose");
@@ -36,7 +36,7 @@ fn mujocos_humanoid_rests_as_high_as_in_mujoco() {
 
 #[test]
 fn the_mjcf_scene_needs_its_file_and_is_unlisted() {
-    let scene = find("mjcf_drop").expect("it can be found");
+    let scene = find("mjcf_drop").expect("the scene is registered");
     assert!(registry().iter().all(|listed| listed.name != scene.name));
     let mut settings = scene.settings();
     let missing = settings.check().expect_err("it has no file yet");

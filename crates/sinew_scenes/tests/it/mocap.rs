@@ -8,7 +8,7 @@ const WALK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/mo
 #[needs_data]
 #[test]
 fn captured_walk_fits_three_bodies() {
-    let scene = find("mocap").expect("it can be found");
+    let scene = find("mocap").expect("the scene is registered");
     let mut settings = scene.settings();
     settings.assign(&format!("motion={WALK}")).expect("the walk can be read");
     assert_eq!(settings.check(), Ok(()));
@@ -25,7 +25,7 @@ fn captured_walk_fits_three_bodies() {
 
 #[test]
 fn files_without_motion_are_refused() {
-    let scene = find("mocap").expect("it can be found");
+    let scene = find("mocap").expect("the scene is registered");
     let mut settings = scene.settings();
     let missing = settings.check().expect_err("it has no file yet");
     assert_eq!(missing.to_string(), "`motion` is not set: it takes the path of a captured motion, a BVH");

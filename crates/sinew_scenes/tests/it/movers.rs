@@ -51,7 +51,7 @@ fn bounds(level: &TriangleMesh) -> Aabb {
 fn with_floor(level: &TriangleMesh) -> World {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
-    world.add_body(&level.to_body().expect("it has triangles"));
+    world.add_body(&level.to_body().expect("the mesh has triangles"));
     world
 }
 

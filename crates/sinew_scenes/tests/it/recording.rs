@@ -47,7 +47,7 @@ fn recording_repeats_its_states_on_any_number_of_threads() {
     let recording = Recording::read(&played(1.0).to_bytes()).expect("what we write we read");
     assert_eq!(recording, played(1.0));
     assert_eq!(recording.key_frames.iter().map(|frame| frame.step).collect::<Vec<_>>(), [0, 30, 60, 90]);
-    let mut replay = Replay::start(recording.clone()).expect("it starts");
+    let mut replay = Replay::start(recording.clone()).expect("the scene starts");
     let threads = Threads::new(2);
     let mut steps = 0;
     while let Some(step) = replay.step_with(&threads, &NoProfiler) {
@@ -85,7 +85,7 @@ fn first_difference_is_found() {
 fn tampered_hash_is_reported_at_its_step() {
     let mut recording = played(1.0);
     recording.steps[17].hash ^= 1;
-    let mut replay = Replay::start(recording).expect("it starts");
+    let mut replay = Replay::start(recording).expect("the scene starts");
     let wrong = std::iter::from_fn(|| replay.step()).find(|step| step.found != step.recorded);
     assert_eq!(wrong.map(|step| step.step), Some(18));
 }
@@ -134,7 +134,7 @@ fn wrong_poses_in_key_frames_are_reported() {
     let frame = &mut recording.key_frames[1];
     let (step, body) = (frame.step, frame.bodies[0].0);
     frame.bodies[0].1.translation.x += 1e-6;
-    let mut replay = Replay::start(recording).expect("it starts");
+    let mut replay = Replay::start(recording).expect("the scene starts");
     assert_eq!(replay.misplaced(), None);
     let found = std::iter::from_fn(|| replay.step().map(|step| (step.step, replay.misplaced())));
     let wrong: Vec<_> = found.filter_map(|(step, body)| Some((step, body?.to_bits()))).collect();

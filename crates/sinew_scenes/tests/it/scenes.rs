@@ -76,7 +76,7 @@ fn unmet(metrics: &[Metric]) -> Vec<&'static str> {
 }
 
 fn scene(name: &str) -> &'static Scene {
-    find(name).expect("the registry has it")
+    find(name).expect("the scene is registered")
 }
 
 fn not_yet(name: &str) -> &'static [&'static str] {
@@ -273,7 +273,7 @@ fn closed_forms_of_rotations_hold_with_other_settings() {
     for (name, assignments) in assignments {
         for assignment in assignments {
             let mut settings = scene(name).settings();
-            settings.assign(assignment).expect("it is in range");
+            settings.assign(assignment).expect("the value is in range");
             let metrics = metrics_after(scene(name), &settings, 1.0);
             assert_eq!(unmet(&metrics), [""; 0], "{name}, {assignment}: metrics {metrics:#?}");
         }
@@ -285,7 +285,7 @@ fn closed_forms_of_rotations_hold_with_other_settings() {
 #[ignore = "an hour in a debug build: cargo test --release --package sinew_scenes -- --ignored"]
 fn ten_thousand_boxes() {
     let mut settings = scene("box_rain").settings();
-    settings.assign("boxes=10000").expect("it is in range");
+    settings.assign("boxes=10000").expect("the value is in range");
     let metrics = metrics_after(scene("box_rain"), &settings, 1.0);
     assert_eq!(unmet(&metrics), [""; 0], "{metrics:#?}");
 }
@@ -297,7 +297,7 @@ fn pyramid_of_a_hundred_rows_stands() {
     // The wall leans by 63 mm instead of 5 (ADR 0015).
     const UNMET: &[&str] = &["shift_max_m", "top_drift_m"];
     let mut settings = scene("large_pyramid").settings();
-    settings.assign("base=100").expect("it is in range");
+    settings.assign("base=100").expect("the value is in range");
     let metrics = metrics_after(scene("large_pyramid"), &settings, 1.0);
     assert_eq!(unmet(&metrics), UNMET, "{metrics:#?}");
 }
@@ -309,7 +309,7 @@ fn falls_in_a_hundred_poses() {
     // The depth is 5.5 mm instead of 5, and 26 mm instead of 10: hands under a falling thigh.
     const UNMET: &[&str] = &["penetration_rest_max_m", "nonadjacent_overlap_max_m"];
     let mut settings = scene("ragdoll_poses").settings();
-    settings.assign("poses=100").expect("it is in range");
+    settings.assign("poses=100").expect("the value is in range");
     let metrics = metrics_after(scene("ragdoll_poses"), &settings, 1.0);
     assert_eq!(unmet(&metrics), UNMET, "{metrics:#?}");
 }

@@ -84,7 +84,7 @@ fn repeats_with_threads(scene: &Scene, reference: &Reference) {
 
 fn continues_from_a_snapshot(scene: &Scene, reference: &Reference, (middle, saved): (u64, &[u8])) {
     let mut run = started(scene);
-    run.load(&mut Reader::new(saved)).expect("it was just saved");
+    run.load(&mut Reader::new(saved)).expect("the saved state is valid");
     for (step, &hash) in reference.hashes.iter().enumerate().skip(middle as usize) {
         run.step();
         assert_eq!(run.world().hash(), hash, "{} restored, step {step}", scene.name);
@@ -122,7 +122,7 @@ fn snapshot_loaded_into_an_unrelated_world_continues_equally() {
         run.world().save_shapes(&mut shapes);
         let mut stranger = started(scene);
         let mut world = World::new(WorldDef::default());
-        world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("they were just saved");
+        world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("the saved states are valid");
         *stranger.world_mut() = world;
         if stranger.load(&mut Reader::new(saved.as_bytes())).is_err() {
             continue;
@@ -140,11 +140,11 @@ fn snapshot_loaded_into_an_unrelated_world_continues_equally() {
 /// A brawl saved at any step, with characters in every state, continues in a new world as in its own.
 #[test]
 fn saved_brawl_continues_in_an_unrelated_world() {
-    let scene = find("brawl").expect("the registry has it");
+    let scene = find("brawl").expect("the scene is registered");
     for powered in 0..2 {
         let mut settings = scene.settings();
-        settings.assign("hits=12").expect("it is in range");
-        settings.assign(&format!("powered={powered}")).expect("it is in range");
+        settings.assign("hits=12").expect("the value is in range");
+        settings.assign(&format!("powered={powered}")).expect("the value is in range");
         let mut run = scene.start(&settings);
         for round in 0..3 {
             (0..150).for_each(|_| run.step());
@@ -153,9 +153,9 @@ fn saved_brawl_continues_in_an_unrelated_world() {
             run.world().save_shapes(&mut shapes);
             let mut stranger = scene.start(&settings);
             let mut world = World::new(WorldDef::default());
-            world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("they were just saved");
+            world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("the saved states are valid");
             *stranger.world_mut() = world;
-            stranger.load(&mut Reader::new(saved.as_bytes())).expect("it was just saved");
+            stranger.load(&mut Reader::new(saved.as_bytes())).expect("the saved state is valid");
             for step in 0..60 {
                 run.step();
                 stranger.step_with(&Threads::new(2), &NoProfiler);
@@ -173,7 +173,7 @@ fn saved_brawl_continues_in_an_unrelated_world() {
 
 #[test]
 fn settings_are_checked() {
-    let scene = find("mass_ratio").expect("the registry has it");
+    let scene = find("mass_ratio").expect("the scene is registered");
     let mut settings = scene.settings();
     settings.assign("links=3").expect("a whole number in range");
     // The scene has two trees, one of which hangs on a hook.
@@ -191,7 +191,7 @@ fn settings_are_checked() {
         assert!(refused(&format!("ratio={value}")).contains("a number from 1 to 1000000"), "{value}");
     }
     assert_eq!(settings.get("links"), 3.0);
-    let none = find("free_fall").expect("the registry has it").settings().assign("x=1");
+    let none = find("free_fall").expect("the scene is registered").settings().assign("x=1");
     assert_eq!(none, Err(SettingError::UnknownKey { key: "x".into(), known: vec![] }));
 }
 

@@ -11,12 +11,12 @@ use sinew_scenes::staged::{Sample, staged};
 fn samples_fall_get_up_and_begin_again() {
     for sample in Sample::ALL {
         let mut stage = staged(sample.character());
-        let start = stage.steered().expect("it can be led");
+        let start = stage.steered().expect("the stage can be steered");
         let (mut lowest, mut begins) = (start.y, Vec::new());
         let mut before = start;
         for step in 0..60 * 40 {
             stage.step();
-            let place = stage.steered().expect("it can be led");
+            let place = stage.steered().expect("the stage can be steered");
             lowest = f32::min(lowest, place.y);
             if (place - start).length() < 0.1 && (before - start).length() > 1.0 {
                 begins.push(step / 60);
@@ -35,12 +35,12 @@ fn run(stage: &mut Instance, seconds: u32) {
 }
 
 fn state(stage: &Instance) -> State {
-    stage.directed().expect("it carries out instructions").state()
+    stage.directed().expect("the stage carries out instructions").state()
 }
 
 /// Returns true if the character plays the clip of that index.
 fn plays(stage: &Instance, clip: usize) -> bool {
-    let character = stage.directed().expect("it carries out instructions");
+    let character = stage.directed().expect("the stage carries out instructions");
     let id = character.def().clip(clip);
     character.animator().tracks().any(|track| track.def().clip == id)
 }
@@ -70,10 +70,10 @@ fn a_character_carries_out_instructions() {
         stage.act(Act::GetUp);
         run(&mut stage, 10);
         assert_eq!(state(&stage), State::Animated, "it is up");
-        let before = stage.steered().expect("it can be led");
+        let before = stage.steered().expect("the stage can be steered");
         stage.steer(Vec3::X * 1.2);
         run(&mut stage, 3);
-        let way = stage.steered().expect("it can be led") - before;
+        let way = stage.steered().expect("the stage can be steered") - before;
         assert!(way.x > 1.5 && way.z.abs() < 1.0, "it walked {way}");
         // An instruction that does not exist changes nothing.
         stage.act(Act::Play(9999));

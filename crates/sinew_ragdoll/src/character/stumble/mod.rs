@@ -252,7 +252,7 @@ impl Balancing<'_> {
     /// Returns the pose of the ankle when the centre of the sole is on the ground at `at`.
     fn tread(&self, world: &World, foot: usize, at: Vec3) -> Transform {
         let def = self.def;
-        let legs = def.legs().expect("it stands on feet");
+        let legs = def.legs().expect("the character stands on feet");
         let place = self.place;
         let ankle = def.bind()[legs.chains[foot].end].to_rigid();
         let rotation = (place.rotation * ankle.rotation).normalize();
@@ -267,7 +267,7 @@ impl Balancing<'_> {
 
     /// Returns heel and ball of a foot, from its ankle.
     fn sole(&self, ankle: Transform, foot: usize) -> [Vec3; 2] {
-        let legs = self.def.legs().expect("it stands on feet");
+        let legs = self.def.legs().expect("the character stands on feet");
         [ankle.translation, ankle.point(legs.balls[foot])]
     }
 

@@ -156,7 +156,7 @@ const WAYS: [Vec3; 6] = [
 /// Adds a strand of three to six bones per direction to the head, without springs yet. Returns the joints of each
 /// strand, including its end.
 pub fn strands(rig: &mut Rig) -> Vec<Vec<usize>> {
-    let head = rig.joints.iter().position(|joint| joint.name == "head").expect("it has a head");
+    let head = rig.joints.iter().position(|joint| joint.name == "head").expect("the character has a head");
     let mut strands = Vec::new();
     for (index, &way) in WAYS.iter().chain(&WAYS).enumerate() {
         let (mut parent, mut joints) = (head, Vec::new());

@@ -55,7 +55,7 @@ fn cape(setup: &Setup<'_>) -> Instance {
     let spawn = site.spawn();
     let mut character = Character::spawn(&mut world, &def, spawn.world_from_character);
     character.set_move(Vec3::Z * sinew::mannequin::WALK_SPEED);
-    let chest = character.bodies()[def.body_named(SHOULDERS).expect("it has a chest")];
+    let chest = character.bodies()[def.body_named(SHOULDERS).expect("the character has a chest")];
     let nape = spawn.world_from_character.point(NAPE);
     let group = worn(&world, chest, nape, setup.number("mass"));
     let cape = world.add_particles(&group);
@@ -134,7 +134,7 @@ impl Worn {
     }
 
     fn chest(&self) -> usize {
-        self.character.def().body_named(SHOULDERS).expect("it has a chest")
+        self.character.def().body_named(SHOULDERS).expect("the character has a chest")
     }
 
     /// Depth of the deepest free particle's centre in one of the bodies, metres; negative: outside.

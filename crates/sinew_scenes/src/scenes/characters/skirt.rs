@@ -146,7 +146,7 @@ impl Script for Dressed {
         self.watch.wear.follow(world, &mut self.character);
         if !self.was_hit && world.time() >= HIT_AT {
             self.was_hit = true;
-            let chest = self.character.def().body_named(SHOULDERS).expect("it has a chest");
+            let chest = self.character.def().body_named(SHOULDERS).expect("the character has a chest");
             self.character.hit(world, chest, Vec3::new(0.6, 0.0, -0.8) * self.impulse);
         }
         self.show();

@@ -61,7 +61,7 @@ fn powered(setup: &Setup<'_>) -> Instance {
 }
 
 fn body(def: &RagdollDef, role: &str) -> usize {
-    def.bodies.iter().position(|body| body.role == role).expect("the mannequin has it")
+    def.bodies.iter().position(|body| body.role == role).expect("the mannequin has the part")
 }
 
 fn mass(def: &RagdollDef) -> f32 {
@@ -143,7 +143,7 @@ fn hit_reaction(setup: &Setup<'_>) -> Instance {
     world.add_body(&floor());
     let Mannequin { rig, mut clips, motions } = mannequin();
     let analysis = analyze(&rig).expect("the mannequin has a skin");
-    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("it has bones");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig has bones");
     let walk = clips.swap_remove(motions.walk);
     let def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
     let walk = Walk { def, walk };

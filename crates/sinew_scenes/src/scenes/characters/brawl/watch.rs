@@ -149,7 +149,7 @@ impl Watch {
     }
 
     fn count(&mut self, name: &str, by: u32) {
-        self.counts[COUNTS.iter().position(|&other| other == name).expect("it is counted")] += by;
+        self.counts[COUNTS.iter().position(|&other| other == name).expect("the scene is counted")] += by;
     }
 
     fn size(&mut self, name: &str, value: f32) {
@@ -290,7 +290,9 @@ impl Watch {
     /// Metrics so far; the expectations are those of a crowd fit for a game.
     pub fn metrics(&self) -> Vec<Metric> {
         let count = |name: &str| {
-            f64::from(self.counts[COUNTS.iter().position(|&other| other == name).expect("it is counted")])
+            f64::from(
+                self.counts[COUNTS.iter().position(|&other| other == name).expect("the scene is counted")],
+            )
         };
         let share = |part: f64, of: f64| if of > 0.0 { part / of } else { 0.0 };
         let ended = count("rises_up") + count("rises_fall");
