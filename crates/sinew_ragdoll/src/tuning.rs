@@ -451,6 +451,26 @@ pub(crate) const FLESH: f32 = 1000.0;
 /// Larger: machines are heavier. Smaller: they are lighter. Shown by the tests of `volume`.
 pub(crate) const MACHINE: f32 = 500.0;
 
+// quality/balance.rs
+
+/// Height over the lowest skin point up to which skin bears a body that gets up, as a share of the character's height.
+///
+/// Larger: knees in the air bear a body. Smaller: a foot that has rolled onto its toes loses its heel. Shown by the
+/// tests of `rising`.
+pub(crate) const BEARS_NEAR: f32 = 0.06;
+
+/// Horizontal distance of the centre of mass from the skin that bears it, as a share of the height, from which a body
+/// that gets up is unbalanced.
+///
+/// A human that swings up from sitting reaches 6 to 11 % for a moment; a stiff figure that rises like a board, 17 to
+/// 40 %. Larger: boards pass. Smaller: swings are reported. Shown by the tests of `rising`.
+pub(crate) const LEANS: f32 = 0.08;
+
+/// Longest time without balance while getting up, seconds.
+///
+/// Larger: boards pass. Smaller: swings are reported. Shown by the tests of `rising`.
+pub(crate) const LEANS_FOR: f32 = 0.35;
+
 // quality/faults.rs
 
 /// Least depth in static geometry at which a character starts inside the world, as a share of its height.

@@ -129,6 +129,7 @@ pub fn skin_json(report: &SkinReport) -> Value {
         "foot_slide_m": known(rising.foot_slide_m),
         "pose_jump_m": known(rising.pose_jump_m),
         "snap_m_s": known(rising.snap_m_s),
+        "unbalanced_s": known(rising.unbalanced_s),
         "contiguous": skin.contiguous,
         "airborne_s": known(skin.airborne_s),
         "size_m": number(skin.size),

@@ -1,17 +1,19 @@
-//! Quality of getting up: sliding feet, and jumps of the pose where bodies hand over to clips.
+//! Quality of getting up: balance, sliding feet, and jumps of the pose where bodies hand over to clips.
 
+use super::balance::unbalanced;
 use super::{Fault, Verdict};
 use crate::bake::{BakeInput, Baked, Frame};
 use crate::character::{CharacterDef, CharacterEvent, State};
 use crate::def::RagdollBodyDef;
 use crate::tuning::{
-    BLENDS_FOR, CLIP_FRAME, GRAVITY, HIPS_BEAR, JUMPS, SLIDES, SLIDES_LEAST, SNAPS, STANDS_NEAR,
-    STANDS_UPRIGHT,
+    BLENDS_FOR, CLIP_FRAME, GRAVITY, HIPS_BEAR, JUMPS, LEANS, LEANS_FOR, SLIDES, SLIDES_LEAST, SNAPS,
+    STANDS_NEAR, STANDS_UPRIGHT,
 };
 use sinew_anim::{Clip, JointIdx, LocalTransform, Wrap, local_to_model, sample};
 use sinew_math::{Affine, Vec3, max, min};
 
-/// Metrics of getting up, metres; `None` if a character does not get up, or has no feet with skin.
+/// Metrics of getting up, metres unless a field says otherwise; `None` if a character does not get up, or has no feet
+/// with skin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RisingQuality {
     /// Largest slide of a foot over the floor while the foot is flat on it, over the stances of all get-ups. Only on
@@ -23,6 +25,9 @@ pub struct RisingQuality {
     /// Largest speed of trunk or head in the blend from the bodies' pose into a get-up clip, beyond their largest speed
     /// in the clip itself, m/s; 0 if they are no faster.
     pub snap_m_s: Option<f32>,
+    /// Longest time for which the centre of mass is more than 8 % of the height beside the skin that touches the floor,
+    /// seconds: a body that rises like a board, or floats onto its feet. Only on horizontal floors.
+    pub unbalanced_s: Option<f32>,
 }
 
 /// Measures all get-ups of a bake; `floor` is the height of the level floor (metres), if any.
@@ -35,6 +40,7 @@ pub fn measure_rising(input: &BakeInput<'_>, baked: &Baked, floor: Option<f32>) 
         foot_slide_m: floor.and_then(|floor| foot_slide(def, baked, floor)),
         pose_jump_m: pose_jump(def, baked),
         snap_m_s: snap(def, baked),
+        unbalanced_s: floor.and_then(|_| unbalanced(def, baked)),
     }
 }
 
@@ -59,6 +65,14 @@ impl RisingQuality {
             let reason = format!(
                 "it snaps into the clip by which it gets up: trunk or head are {speed:.1} m/s faster than in the clip, more than {bar:.1} m/s; \
                  --get-up NAME takes a clip that begins as it lies, {help}"
+            );
+            faults.push(Fault { at_most: Verdict::Usable, reason });
+        }
+        if let Some(seconds) = self.unbalanced_s.filter(|time| *time > LEANS_FOR || time.is_nan()) {
+            let reason = format!(
+                "getting up its centre of mass is more than {:.0} cm beside hands and feet for {seconds:.2} s, longer than \
+                 {LEANS_FOR} s; {help}",
+                100.0 * LEANS * height
             );
             faults.push(Fault { at_most: Verdict::Usable, reason });
         }

@@ -136,12 +136,59 @@ fn only_feet_that_bear_the_body_slide() {
     assert!(sitting < 0.001, "a sitting character's foot slides by {sitting} m");
 }
 
+/// A stiff body that turns about its feet from lying to standing, as a board does, is not balanced; one that bends
+/// hips and knees over its feet is.
+#[test]
+fn body_that_rises_like_a_board_is_reported() {
+    let def = shared(walker());
+    let bodies = [floor()];
+    let input = BakeInput { bodies: &bodies, seconds: 0.2, ..BakeInput::new(def.clone()) };
+    let joint = |name: &str| def.ragdoll.bodies[def.body_named(name).expect("the named item exists")].joint;
+    let rise = |pose_at: &dyn Fn(f32) -> Vec<LocalTransform>| {
+        let mut baked = bake(&input);
+        let first = baked.frames[0].clone();
+        baked.frames.clear();
+        for step in 0..=30 {
+            let mut frame = first.clone();
+            (frame.state, frame.time) = (State::GettingUp, step as f32 / 30.0);
+            frame.pose = pose_at(1.0 - frame.time);
+            baked.frames.push(frame);
+        }
+        measure_rising(&input, &baked, Some(0.0))
+    };
+    let board = rise(&|share| {
+        let mut pose = def.rest().to_vec();
+        let back = Rotation::from_axis_angle(Vec3::X, -share * 80_f32.to_radians());
+        turn(&def, &mut pose, joint("hips"), back);
+        pose
+    });
+    let squat = rise(&|share| {
+        let mut pose = def.rest().to_vec();
+        for side in ["left", "right"] {
+            let forward = Rotation::from_axis_angle(Vec3::X, share * 30_f32.to_radians());
+            turn(&def, &mut pose, joint(&format!("{side}UpperLeg")), forward.inverse());
+            turn(&def, &mut pose, joint(&format!("{side}LowerLeg")), forward);
+        }
+        pose
+    });
+    println!("board {board:?}, squat {squat:?}");
+    let reported = |rising: &RisingQuality| {
+        rising.faults(HEIGHT).iter().any(|fault| fault.reason.contains("its centre of mass"))
+    };
+    assert!(board.unbalanced_s.is_some_and(|time| time > 0.5) && reported(&board), "{board:?}");
+    assert!(squat.unbalanced_s == Some(0.0) && !reported(&squat), "{squat:?}");
+}
+
 #[test]
 fn metrics_beyond_their_bounds_are_reported() {
-    let bad =
-        RisingQuality { foot_slide_m: Some(0.2), pose_jump_m: Some(f32::NAN), snap_m_s: Some(f32::NAN) };
+    let bad = RisingQuality {
+        foot_slide_m: Some(0.2),
+        pose_jump_m: Some(f32::NAN),
+        snap_m_s: Some(f32::NAN),
+        unbalanced_s: Some(f32::NAN),
+    };
     let faults = bad.faults(HEIGHT);
-    assert_eq!(faults.len(), 3, "{faults:?}");
+    assert_eq!(faults.len(), 4, "{faults:?}");
     assert!(faults.iter().all(|fault| fault.at_most == Verdict::Usable));
     assert!(faults[0].reason.starts_with("getting up a foot slides by 20.0 cm"), "{faults:?}");
 }
