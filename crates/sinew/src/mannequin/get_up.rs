@@ -33,9 +33,9 @@ struct Step {
 }
 
 /// Height by which a step is lifted, metres.
-const STEP_HEIGHT: f32 = 0.05;
+const STEP_HEIGHT: f32 = 0.1;
 /// Share of a step at each end in which the foot moves only vertically.
-const STRAIGHT_UP: f32 = 0.08;
+const STRAIGHT_UP: f32 = 0.3;
 
 impl Step {
     fn ankle(&self, from: Vec3, to: Vec3, time: f32) -> Vec3 {
@@ -280,7 +280,7 @@ fn stepping_up(on_all_fours: Posture) -> [Posture; 4] {
         chest: lean(2.0),
         neck: lean(-6.0),
         head: lean(-6.0),
-        right_foot: lifted(v(-0.105, 0.20, -0.22), 24.0, 8.0),
+        right_foot: lifted(v(-0.105, 0.22, -0.20), 12.0, 8.0),
         ..rising
     }
     .with_arms(Hanging { forward: 14.0, out: 9.0, elbow: 28.0 });
