@@ -30,10 +30,10 @@ struct Step {
     /// Seconds.
     from: f32,
     to: f32,
+    /// Height by which the foot is lifted, metres. Too low, the foot drags over the floor on other bodies.
+    height: f32,
 }
 
-/// Height by which a step is lifted, metres.
-const STEP_HEIGHT: f32 = 0.1;
 /// Share of a step at each end in which the foot moves only vertically.
 const STRAIGHT_UP: f32 = 0.3;
 
@@ -41,7 +41,7 @@ impl Step {
     fn ankle(&self, from: Vec3, to: Vec3, time: f32) -> Vec3 {
         let u = (time - self.from) / (self.to - self.from);
         let along = smoothstep((u - STRAIGHT_UP) / (1.0 - 2.0 * STRAIGHT_UP));
-        from + (to - from) * along + Vec3::Y * (16.0 * u * u * (1.0 - u) * (1.0 - u) * STEP_HEIGHT)
+        from + (to - from) * along + Vec3::Y * (16.0 * u * u * (1.0 - u) * (1.0 - u) * self.height)
     }
 }
 
@@ -83,7 +83,8 @@ pub(super) fn from_back() -> Clip {
         (2.4, nearly),
         (2.8, Posture::standing()),
     ];
-    let steps = [Step { side: Left, from: 0.9, to: 1.2 }, Step { side: Right, from: 0.9, to: 1.2 }];
+    let step = |side| Step { side, from: 0.9, to: 1.2, height: 0.05 };
+    let steps = [step(Left), step(Right)];
     clip("get_up_supine", &postures.map(|(at, posture)| Key { at, posture }), &steps)
 }
 
@@ -189,9 +190,9 @@ pub(super) fn from_face() -> Clip {
         (2.9, Posture::standing()),
     ];
     let steps = [
-        Step { side: Left, from: 1.4, to: 1.75 },
-        Step { side: Right, from: 2.15, to: 2.55 },
-        Step { side: Right, from: 2.55, to: 2.9 },
+        Step { side: Left, from: 1.4, to: 1.75, height: 0.1 },
+        Step { side: Right, from: 2.15, to: 2.55, height: 0.1 },
+        Step { side: Right, from: 2.55, to: 2.9, height: 0.1 },
     ];
     clip("get_up_prone", &postures.map(|(at, posture)| Key { at, posture }), &steps)
 }

@@ -1,7 +1,7 @@
 //! Films of a fall.
 
 use crate::fall::Fall;
-use crate::render::framing::Framing;
+use crate::render::framing::{Framing, haze_distance};
 use crate::render::skin;
 use crate::report::progress::Progress;
 use crate::report::story;
@@ -118,6 +118,7 @@ impl<'a> Shots<'a> {
                 .collect();
             let framing = Framing::new(&boxes, FPS as f32, direction);
             let side = clear_side(fall.input.bodies, &framing, &boxes, direction);
+            shots.scene.sky.haze_distance = haze_distance(framing.radius());
             shots.camera = Shooting::Framing(framing.seen_from(side));
         }
         shots
@@ -222,7 +223,7 @@ fn arrow(tip: Vec3, along: Vec3) -> [Model; 2] {
     ]
 }
 
-/// Half size of the drawn part of an unbounded floor, metres per side: as far as the haze allows.
+/// Half size of the drawn part of an unbounded floor around a human, metres per side: as far as the haze allows.
 pub const FLOOR_HALF_SIZE: f32 = 40.0;
 
 /// Returns the surface of a world body in one colour (linear); half-spaces become floors, `half_size` metres per

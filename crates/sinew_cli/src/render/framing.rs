@@ -11,6 +11,12 @@ const MARGIN: f32 = 0.08;
 /// The camera does not move if the total extent is at most this many times the largest momentary extent.
 const STILL: f32 = 1.7;
 
+/// Returns the distance at which haze hides half of a surface, metres, for a subject of this radius (metres): large
+/// subjects are seen from afar.
+pub fn haze_distance(radius: f32) -> f32 {
+    max(45.0, 15.0 * radius)
+}
+
 /// Camera poses of all pictures, with the same direction and distance.
 #[derive(Clone, Debug)]
 pub struct Framing {

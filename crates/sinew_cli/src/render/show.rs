@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Result};
 use crate::input::motion::Motion;
 use crate::render::bones::add_bone_models;
-use crate::render::framing::Framing;
+use crate::render::framing::{Framing, haze_distance};
 use crate::render::skin;
 use crate::report::progress::Progress;
 use crate::report::table::shown;
@@ -132,7 +132,7 @@ impl Show {
         let tile = if (0.2..10.0).contains(&radius) { 1.0 } else { radius };
         let mut scene = Scene {
             sun: Sun { shadow_radius: 1.3 * radius, ..Sun::default() },
-            sky: Sky { haze_distance: max(45.0, 15.0 * radius), ..Sky::default() },
+            sky: Sky { haze_distance: haze_distance(radius), ..Sky::default() },
             models: skin::models(&self.rig, &self.pose(0.0), &self.looks).collect(),
             ..Scene::default()
         };

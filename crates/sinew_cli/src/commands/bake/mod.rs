@@ -37,7 +37,7 @@ use place::{Place, degrees, metres, place, point};
 use sinew::CharacterSource;
 use sinew::anim::{Garment, KeyBound};
 use sinew::formats::{Textures, load_world};
-use sinew::math::{Rotation, Transform, Vec3};
+use sinew::math::{Rotation, Transform, Vec3, max};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::bake::KEY_BOUND;
 use sinew::ragdoll::quality::{Doubt, toppled};
@@ -424,10 +424,11 @@ fn floor(level: f32) -> BodyDef {
 /// Returns a film of the whole character from its front left (facing +Z), unless the view is blocked there.
 fn film<'a>(fall: &'a Fall<'a>) -> Film<'a> {
     let mut set = Vec::new();
+    let half_size = max(FLOOR_HALF_SIZE, 30.0 * fall.input.character.ragdoll.height);
     for (index, body) in fall.input.bodies.iter().enumerate() {
         let is_floor = body.shapes.iter().any(|shape| shape.shape == Shape::HalfSpace);
         let [color, other] = if is_floor { FLOOR } else { [OBSTACLES[index % OBSTACLES.len()]; 2] };
-        set.extend(body_models(body, FLOOR_HALF_SIZE, color, other));
+        set.extend(body_models(body, half_size, color, other));
     }
     Film {
         fall,

@@ -1,6 +1,7 @@
 //! Pictures of a running scene.
 
 use super::Subject;
+use crate::render::framing::haze_distance;
 use crate::render::skin;
 use crate::report::progress::Progress;
 use sinew::math::{Vec3, clamp, max};
@@ -171,7 +172,7 @@ impl Take {
         };
         let mut scene = Scene {
             sun: Sun { shadow_radius: 1.3 * frame.radius, ..Sun::default() },
-            sky: Sky { haze_distance: max(45.0, 15.0 * frame.radius), ..Sky::default() },
+            sky: Sky { haze_distance: haze_distance(frame.radius), ..Sky::default() },
             captions: self.captions(reel),
             ..Scene::default()
         };
