@@ -98,6 +98,7 @@ pub(super) fn read_names(names: &[&str], parents: &[Option<usize>]) -> Vec<Readi
     }
     if parents.len() == readings.len() {
         name_ball(&mut readings, parents);
+        name_lower_arms(&mut readings, &senses, parents);
         // Only CAT rigs have hubs.
         if senses.iter().filter(|&&sense| sense == Some(Sense::Hub)).count() > 1 {
             name_halves(&mut readings, &senses, parents);
@@ -146,6 +147,23 @@ fn name_hubs(readings: &mut [Reading], senses: &[Option<Sense>], parents: &[Opti
             (true, false) => Some(Part::Spine),
             (false, true) => None,
         };
+    }
+}
+
+/// Reads a joint that is only named arm, below an upper arm of its side, as the lower arm if no joint has that name.
+fn name_lower_arms(readings: &mut [Reading], senses: &[Option<Sense>], parents: &[Option<usize>]) {
+    if senses.contains(&Some(Sense::Part(Part::LowerArm))) {
+        return;
+    }
+    for joint in 0..readings.len() {
+        let side = readings[joint].side;
+        let is_upper = |&above: &usize| {
+            senses[above] == Some(Sense::Part(Part::UpperArm)) && readings[above].side == side
+        };
+        let above = core::iter::successors(parents[joint], |&at| parents[at]).find(is_upper);
+        if senses[joint] == Some(Sense::Arm) && side.is_some() && above.is_some() {
+            readings[joint].part = Some(Part::LowerArm);
+        }
     }
 }
 
