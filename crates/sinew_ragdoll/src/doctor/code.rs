@@ -181,7 +181,7 @@ codes! {
     /// A part is attached to a body from which its skin does not grow.
     LimbApart "limb-apart" Warning
         "the rig has a part of a limb beside the body, as controls of inverse kinematics do, and it was hung elsewhere"
-        "Say with `--role` which part of which limb it is.";
+        "Say with `--role` which part of a human's limb it is, or leave it without a body (`--no-body`).";
     /// The drawn size differs from the bound size.
     DrawnResized "drawn-resized" Warning
         "the nodes' own transforms scale the skin otherwise than its bind matrices, so that it sinks in or floats"

@@ -171,6 +171,9 @@ fn insert(rig: &Rig, analysis: &mut RigAnalysis, joint: JointIdx, carrier: usize
     });
     let free = Role::LimbSegment { limb: limbs.max().unwrap_or(0), segment: 0 };
     let guess = analysis.roles[joint];
+    let moves_skin = |at: JointIdx| rig.skins.iter().any(|skin| skin.joints.contains(&at));
+    // A rigid mesh without a role, such as a helmet, does not swing on its carrier.
+    let is_prop = guess.is_none() && !own.iter().chain([&joint]).any(|&at| moves_skin(at));
     let new = KeptBone {
         joint,
         role: guess.map_or(free, |guess| guess.role),
@@ -178,7 +181,7 @@ fn insert(rig: &Rig, analysis: &mut RigAnalysis, joint: JointIdx, carrier: usize
         parent: Some(carrier),
         merged: own.into_iter().filter(|&merged| merged != joint).collect(),
         bind_model: analysis.bind_model[joint],
-        is_prop: false,
+        is_prop,
     };
     let index = carrier + 1;
     for follower in &new.merged {

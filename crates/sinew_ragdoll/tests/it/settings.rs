@@ -1,7 +1,7 @@
 //! Settings: each setting changes the named parts, and nothing else.
 
 use needs_data::needs_data;
-use sinew_anim::{Joint, LocalTransform, Role, analyze};
+use sinew_anim::{Joint, LocalTransform, Primitive, RigMesh, Role, analyze};
 use sinew_math::{Range, Vec3};
 use sinew_physics::{BodyDef, JointKind, Shape};
 use sinew_ragdoll::settings::{BodyWish, BoneSettings, JointWish, ShapeWish, Unit, analyze_with};
@@ -166,6 +166,27 @@ fn merged_bone_can_be_kept() {
     let new = def.bodies.iter().position(|body| body.joint == joint).expect("a body of its own");
     assert_eq!(def.bodies[def.joints[new - 1].parent].bone, carrier.bone);
     assert!(!def.bodies.iter().any(|body| body.merged.contains(&joint)));
+}
+
+/// A helmet without skin that gets a body of its own is fixed to the head.
+#[test]
+fn kept_rigid_mesh_is_fixed_to_its_carrier() {
+    let mut rig = mannequin().rig;
+    let head = rig.joints.iter().position(|joint| joint.name == "head").expect("the joint exists");
+    let helmet = rig.joints.len();
+    let rest = LocalTransform { translation: Vec3::Y * 0.1, ..LocalTransform::default() };
+    rig.joints.push(Joint { name: "helmet".into(), parent: Some(head), rest, source: helmet });
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * 0.1).to_vec();
+    let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
+    let primitive = Primitive { positions, indices, ..Primitive::default() };
+    rig.meshes.push(RigMesh { name: String::new(), joint: helmet, skin: None, primitives: vec![primitive] });
+    let analysis = analyze(&rig).expect("the rig has a skin");
+    let keep = BoneSettings { body: Some(BodyWish::Keep), ..BoneSettings::default() };
+    let built = build_with(&rig, &analysis, &BuildOptions::default(), &of_bone("helmet", keep));
+    let (def, _) = built.expect("the helmet gets a body");
+    let new = def.bodies.iter().position(|body| body.joint == helmet).expect("a body of its own");
+    assert_eq!(def.bodies[def.joints[new - 1].parent].role, "head");
+    assert!(matches!(def.joints[new - 1].kind, JointKind::Fixed { .. }), "{:?}", def.joints[new - 1].kind);
 }
 
 /// A re-exported file has its joints at other indices; a definition finds them by name.
