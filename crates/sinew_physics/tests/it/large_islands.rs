@@ -46,7 +46,7 @@ fn pit(side: usize, layers: usize) -> World {
     world
 }
 
-/// Profiler that stores the largest number of manifolds that one step counts.
+/// Profiler that stores the largest number of manifolds of one island.
 #[derive(Default)]
 struct Most(AtomicUsize);
 
