@@ -107,11 +107,11 @@ struct Slider {
     friction: f32,
 }
 
-fn goer(kind: usize, way: Vec3, random: &mut Random) -> Slider {
+fn slider(kind: usize, way: Vec3, random: &mut Random) -> Slider {
     let yaw = Rotation::from_axis_angle(Vec3::Y, random.range(0.0, core::f32::consts::TAU));
     let half = Vec3::new(0.2, 0.15, 0.25);
     let lying = Rotation::from_arc(Vec3::Y, Vec3::Y.cross(way).normalize());
-    let rolls = |shape: Shape, radius: f32, turn: Rotation| Goer {
+    let rolls = |shape: Shape, radius: f32, turn: Rotation| Slider {
         shape,
         height: radius,
         turn,
@@ -144,19 +144,19 @@ fn run(tiles: Tiles, kind: usize, speed: f32, seed: u64) -> Way {
     let mut random = Random::new(seed);
     let heading = random.range(0.0, core::f32::consts::TAU);
     let way = Vec3::new(trig::cos(heading), 0.0, trig::sin(heading));
-    let goer = goer(kind, way, &mut random);
-    let start = Vec3::new(random.range(-1.0, 1.0), goer.height, random.range(-1.0, 1.0));
+    let slider = slider(kind, way, &mut random);
+    let start = Vec3::new(random.range(-1.0, 1.0), slider.height, random.range(-1.0, 1.0));
     let mut world = World::new(WorldDef::default());
-    let material = Material { friction: goer.friction, ..Material::DEFAULT };
+    let material = Material { friction: slider.friction, ..Material::DEFAULT };
     add_ground(&mut world, tiles, material, &mut random);
-    let shape = ShapeDef { material, ..ShapeDef::new(goer.shape) };
+    let shape = ShapeDef { material, ..ShapeDef::new(slider.shape) };
     let body = world.add_body(&BodyDef {
         linear_velocity: way * speed,
-        angular_velocity: Vec3::Y.cross(way) * (speed * goer.spin),
-        ..BodyDef::dynamic(shape).at(start).turned(goer.turn)
+        angular_velocity: Vec3::Y.cross(way) * (speed * slider.spin),
+        ..BodyDef::dynamic(shape).at(start).turned(slider.turn)
     });
     let mut apex = 0.0;
-    let height = |world: &World| world.center_of_mass(body).y - goer.height;
+    let height = |world: &World| world.center_of_mass(body).y - slider.height;
     for _ in 0..sinew_math::min(6.0 / speed * 60.0, 240.0) as usize {
         world.step();
         apex = max(apex, height(&world));
