@@ -88,8 +88,7 @@ impl Dressed {
         local_to_model(&self.character.def().rig, self.character.pose(), &root, &mut self.model);
     }
 
-    /// Returns the largest depths of free particles' centres, metres: in a body of the wearer, in another body, and
-    /// of
+    /// Returns the largest depths of free particles' centres, metres: in a body of the wearer, in another body, and of
     /// particles that touch two bodies; 0 if all are outside. A particle between two touching bodies, such as thigh and
     /// belly, cannot be outside of both.
     fn deepest(&self, world: &World, id: GroupId) -> [f32; 3] {
