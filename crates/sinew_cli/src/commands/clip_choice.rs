@@ -66,7 +66,7 @@ fn words(name: &str) -> Vec<String> {
             words.push(String::new());
         }
         if c.is_alphanumeric() {
-            words.last_mut().expect("there is one").extend(c.to_lowercase());
+            words.last_mut().expect("a word has been started").extend(c.to_lowercase());
         }
         last = c;
     }
