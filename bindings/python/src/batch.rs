@@ -87,7 +87,7 @@ impl BatchWorlds {
         let numbers: Vec<i64> = elements(worlds, &[None], "worlds")?;
         let known = |&number: &i64| usize::try_from(number).ok().filter(|&number| number < count);
         let checked =
-            |number: &i64| known(number).ok_or_else(|| bad(format!("there is no world {number} of {count}")));
+            |number: &i64| known(number).ok_or_else(|| bad(format!("world {number} is out of range: the batch has {count}")));
         numbers.iter().map(checked).collect()
     }
 }
@@ -310,7 +310,7 @@ impl BatchWorlds {
     fn contacts<'py>(&self, py: Python<'py>, world: usize) -> PyResult<Bound<'py, PyDict>> {
         let count = self.worlds.len();
         let world =
-            self.worlds.get(world).ok_or_else(|| bad(format!("there is no world {world} of {count}")))?;
+            self.worlds.get(world).ok_or_else(|| bad(format!("world {world} is out of range: the batch has {count}")))?;
         contact_dict(py, &world.lock().unwrap_or_else(PoisonError::into_inner))
     }
 

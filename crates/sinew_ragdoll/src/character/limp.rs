@@ -79,8 +79,8 @@ impl Stillness {
         self.settled &= self.calm_steps > 0;
     }
 
-    /// Returns the share of the joint friction at the present time since the character went limp.
-    pub fn slackness(&self, dt: f32) -> f32 {
+    /// Returns the share of the full joint friction that applies at this time after going limp; it may exceed 1.
+    pub fn friction_share(&self, dt: f32) -> f32 {
         self.steps as f32 * dt / SLACKENS
     }
 }

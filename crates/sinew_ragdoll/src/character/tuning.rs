@@ -234,8 +234,8 @@ pub(crate) const TOES_OVER: f32 = 0.06;
 /// Larger: feet land beside their clips. Smaller: toes enter walls. Shown by the tests of `feet`.
 pub(crate) const TOES_CLEAR: f32 = 0.02;
 
-/// Largest drop of the ground for a walking foot, over body height. A mover reaches the next stair before the foot
-/// does, by its radius.
+/// Largest depth of the ground below the mover to which a walking foot reaches, as a share of the body height. It
+/// exceeds one stair, because the mover is ahead of the foot by its radius.
 ///
 /// Larger: legs reach into holes. Smaller: feet hang over steps. Shown by the tests of `feet`.
 pub(crate) const TREAD_RANGE: f32 = 0.34;

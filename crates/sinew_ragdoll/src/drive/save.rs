@@ -37,7 +37,7 @@ impl Drives {
     /// If the bytes are not a saved state; the drives then do not change.
     pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
-            return Err(r.error("is not a ragdoll's drives of this version"));
+            return Err(r.error("these bytes are not ragdoll drives saved by this version"));
         }
         let recovery = sound(r)?;
         let ground = if r.bool()? { Some(BodyId::from_bits(r.u64()?)) } else { None };
