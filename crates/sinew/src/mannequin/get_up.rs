@@ -118,8 +118,8 @@ fn sitting_up() -> [Posture; 3] {
         chest: lean(8.0),
         neck: lean(6.0),
         head: lean(0.0),
-        left_foot: lifted(v(0.11, 0.14, 0.06), -8.0, 8.0),
-        right_foot: lifted(v(-0.13, 0.15, 0.16), -15.0, 8.0),
+        left_foot: lifted(v(0.11, 0.15, 0.06), -8.0, 8.0),
+        right_foot: lifted(v(-0.13, 0.16, 0.16), -15.0, 8.0),
         left_hand: palm(0.34, -0.62, 10.0, 50.0),
         right_hand: palm(-0.34, -0.62, 10.0, 50.0),
     };
@@ -128,7 +128,7 @@ fn sitting_up() -> [Posture; 3] {
 
 fn standing_up(sitting: Posture) -> [Posture; 4] {
     let pushing = Posture {
-        pelvis: v(-0.02, 0.126, -0.41),
+        pelvis: v(-0.02, 0.15, -0.41),
         pelvis_turn: v(-15.0, -8.0, 10.0),
         spine: lean(20.0),
         chest: lean(12.0),
