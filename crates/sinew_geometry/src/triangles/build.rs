@@ -141,7 +141,7 @@ fn active_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
     let mut active = vec![0_u8; triangles.len()];
     for around in sides.chunk_by(|p, q| p.edge == q.edge) {
         for side in around {
-            // Among several triangles at an edge, the one that continues most nearly straight decides.
+            // If several triangles share the edge, the one whose continuation bends least decides.
             let beyond = around.iter().filter(|other| other.forward != side.forward);
             let felt = beyond.map(|other| is_felt(&corners(side.triangle), &corners(other.triangle)));
             if felt.reduce(|a, b| a && b).unwrap_or(true) {

@@ -176,7 +176,11 @@ impl Kernel for SignedDistances<'_> {
     fn run<L: Lanes>(self) {
         let obb = Placed::<L>::new(self.obb);
         let blocks = self.points.0.blocks();
-        assert_eq!(self.distances.len(), self.points.len(), "`distances` must be as long as `points`");
+        assert_eq!(
+            self.distances.len(),
+            self.points.len(),
+            "`distances` must have one distance for every point"
+        );
         let (whole, tail) = self.distances.as_chunks_mut::<WIDTH>();
         for (Block(rows), distances) in blocks.iter().zip(&mut *whole) {
             obb.signed_distance(load(rows)).store(distances);
