@@ -84,7 +84,7 @@ struct Sizes {
     /// Names of the body and of its measure, for a sentence.
     words: [&'static str; 2],
     fits: core::ops::Range<f32>,
-    /// Sizes in metres that prove that the unit is one centimetre.
+    /// Sizes, taking the file's unit as a centimetre, at which the unit is accepted as a centimetre.
     surely: core::ops::Range<f32>,
     /// Usual size, metres.
     usual: f32,
