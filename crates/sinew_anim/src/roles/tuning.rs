@@ -11,11 +11,11 @@
 /// do not follow their legs. Smaller: stray weights turn controls into bones. Shown by the tests of `wild`.
 pub(crate) const CONTROL_SKIN: f32 = 5e-4;
 
-/// Least sum of the distances of both toes in front of the ankles, in body heights, at which the feet decide the
-/// forward direction against the names of left and right.
+/// Least distance by which the feet extend in front of their ankles, summed over both feet, in body heights, at which
+/// they decide the forward direction against the names of left and right.
 ///
-/// It is half of a human's sum. Larger: swapped names reverse characters. Smaller: toes slightly off reverse
-/// characters. Shown by the tests of `hints`.
+/// It is half of a human's distance. Larger: swapped names reverse characters. Smaller: feet that extend slightly
+/// backward reverse characters. Shown by the tests of `hints`.
 pub(crate) const FEET_AGAINST_NAMES: f32 = 0.04;
 
 /// Least such distance, in body heights, at which the feet decide the forward direction if there is no other evidence.

@@ -266,7 +266,7 @@ fn place(axis: SeparatingAxis) -> u8 {
 }
 
 #[test]
-fn results_for_random_boxes_have_the_golden_hash() {
+fn golden_soup_of_boxes() {
     let soup = soup();
     let pairs = pairs_of(&soup);
     for level in Level::available() {
