@@ -1,6 +1,6 @@
 //! Height fields as shapes: terrain over a grid.
 
-use super::build::is_felt;
+use super::build::bends_down;
 use super::triangle::{Triangle, bounds, closest_on_triangle, enter_triangle};
 use super::{Closest, MAX_COORDINATE};
 use crate::boxes::{Aabb, Overlap};
@@ -206,8 +206,8 @@ impl HeightField {
             for half in 0..2 {
                 let triangle = 2 * cell as u32 + half;
                 for (edge, beyond) in self.beyond(triangle).into_iter().enumerate() {
-                    let felt = |other| is_felt(&self.corners(triangle), &self.corners(other));
-                    if beyond.is_none_or(felt) {
+                    let bends = |other| bends_down(&self.corners(triangle), &self.corners(other));
+                    if beyond.is_none_or(bends) {
                         self.cells[cell] |= 1 << (3 * half as usize + edge);
                     }
                 }
