@@ -19,7 +19,7 @@ pub struct LearnedHinge {
     pub off_axis: f32,
 }
 
-/// Limit that a joint kept in nearly all frames of all takes.
+/// Joint limit that contains the joint's rotation in nearly all frames of all takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LearnedLimit {
     /// Joint of the limit.

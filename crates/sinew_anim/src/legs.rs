@@ -90,7 +90,7 @@ impl Legs {
         Some(Self { pelvis, feet, strays: strays(rig, analysis) })
     }
 
-    /// True for legs of one bone, whose knees are [added](add_ankles): they are drawn straight.
+    /// True if the legs' knees were [added](add_ankles), because each leg is one bone; such legs do not bend.
     pub fn are_stiff(&self, rig: &Rig) -> bool {
         self.feet.iter().any(|foot| rig.joints[foot.leg.lower].source == usize::MAX)
     }
@@ -197,7 +197,7 @@ fn add_joint(
     Some(rig.joints.len() - 1)
 }
 
-/// Makes a joint with its body a part of another's body.
+/// Merges the body of a joint into the body of another joint.
 fn join(analysis: &mut RigAnalysis, joint: JointIdx, other: JointIdx) {
     let body = analysis.merge_into[other].unwrap_or(other);
     analysis.roles[joint] = None;
@@ -206,7 +206,7 @@ fn join(analysis: &mut RigAnalysis, joint: JointIdx, other: JointIdx) {
     merged.for_each(|into| *into = Some(body));
 }
 
-/// True for a joint not higher above its lowest skin than an ankle: a foot.
+/// True if a joint is a foot: at most as high above its lowest skin as an ankle.
 fn is_on_floor(rig: &Rig, analysis: &RigAnalysis, bone: JointIdx) -> bool {
     let moves = |bound: Bound| bound.movers.contains(&bone);
     end_of_leg(rig, analysis, bone).is_none() && Bound::of(rig).is_some_and(moves)

@@ -39,7 +39,7 @@ pub struct Riders {
 }
 
 impl Riders {
-    /// Finds the riders of a rig.
+    /// Finds the riders of a rig, with their transforms in the bind pose.
     ///
     /// # Panics
     /// If the analysis does not fit the rig.

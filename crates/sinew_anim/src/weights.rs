@@ -181,8 +181,8 @@ fn pieces(primitive: &Primitive) -> Vec<usize> {
     (0..parent.len()).map(|vertex| root(&mut parent, vertex)).collect()
 }
 
-/// Returns the only joint that moves skin in a rig whose skins have several joints: the vertex weights were lost, and
-/// the skin would move as one piece. `None` if more than one joint moves skin, or if rigid meshes are attached to
+/// Detects lost vertex weights: returns the joint that moves all skin, although the rig's skins have several joints, so
+/// that the skin would move as one piece. `None` if more than one joint moves skin, or if rigid meshes are attached to
 /// bones, as in a machine.
 ///
 /// # Panics
@@ -220,8 +220,8 @@ pub fn lost_weights(rig: &Rig) -> Option<JointIdx> {
 ///
 /// A bone runs from a joint of the skin to each of its children in the skin; a childless joint is a point. A vertex is
 /// weighted to the nearest bone and the bones that meet it, by the inverse fourth power of the distance, so that an
-/// arm at the side does not pull the trunk. A root with a single chain is no bone, because it is on the ground between
-/// the feet.
+/// arm at the side does not pull the trunk. A root with a single child does not count as a bone, because it is usually
+/// on the ground between the feet.
 ///
 /// Returns the changed parts, all vertices of each.
 ///

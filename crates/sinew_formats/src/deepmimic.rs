@@ -41,7 +41,7 @@ pub enum DeepMimicJoint {
 }
 
 impl DeepMimicJoint {
-    /// Count of the joint's numbers in a row.
+    /// Number of values of the joint in a row.
     fn width(self) -> usize {
         match self {
             Self::Root => 7,

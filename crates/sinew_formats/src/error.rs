@@ -31,17 +31,17 @@ pub struct Error {
 pub type Result<T, E = Error> = core::result::Result<T, E>;
 
 impl Error {
-    /// Makes an error of the operating system. `what` is one line.
+    /// Creates an error of the operating system. `what` is a description in one line.
     pub fn io(what: impl Into<String>) -> Self {
         Self { kind: ErrorKind::Io, file: String::new(), what: what.into(), where_: String::new() }
     }
 
-    /// Makes an error for invalid bytes at `place`.
+    /// Creates an error for invalid bytes at `place`.
     pub fn malformed(what: impl Into<String>, place: impl Into<String>) -> Self {
         Self { kind: ErrorKind::Malformed, file: String::new(), what: what.into(), where_: place.into() }
     }
 
-    /// Makes an error for an unsupported feature at `place`.
+    /// Creates an error for an unsupported feature at `place`.
     pub fn unsupported(what: impl Into<String>, place: impl Into<String>) -> Self {
         Self { kind: ErrorKind::Unsupported, file: String::new(), what: what.into(), where_: place.into() }
     }

@@ -91,8 +91,8 @@ pub fn write_events(clips: &[Clip], events: &[Vec<ClipEvent>]) -> String {
     json::to_text(&json!({"sinew": "events", "version": VERSION, "clips": entries}))
 }
 
-/// Makes the `extras` of a glTF animation with these events, for [`append_clip`](crate::append_clip); `None` if there
-/// are none.
+/// Returns the `extras` of a glTF animation with these events, for [`append_clip`](crate::append_clip); `None` without
+/// events.
 ///
 /// # Panics
 /// If a number is not finite.

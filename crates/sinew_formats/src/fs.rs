@@ -1,4 +1,4 @@
-//! File IO of the libraries, only here: reading, atomic writing, and reading files next to a file within its folder.
+//! All file access of the libraries: reading, atomic writing, and reading files in the folder of another file.
 //!
 //! ```
 //! use sinew_formats::{load_world, write_atomic};
@@ -54,7 +54,7 @@ fn reason(path: &Path, error: &io::Error) -> String {
         io::ErrorKind::IsADirectory => "is a folder".into(),
         io::ErrorKind::PermissionDenied => "permission denied".into(),
         io::ErrorKind::StorageFull => "no space left".into(),
-        // Remove the number, which differs between systems.
+        // Removes the error number, which differs between systems.
         _ => error.to_string().split(" (os error ").next().unwrap_or_default().to_owned(),
     }
 }
@@ -217,7 +217,7 @@ fn read_any(path: &Path, options: &MotionOptions<'_>) -> Result<MotionFile> {
 
 /// Returns the DeepMimic characters in the folder of a clip, by name.
 fn characters_beside(path: &Path) -> Vec<(String, DeepMimicCharacter)> {
-    // A character is a page or two of text, but a folder may contain any files.
+    // A character file is short, but the folder may contain any files, so their size and number are limited.
     const LARGEST: u64 = 1 << 20;
     const MOST_FILES: usize = 1000;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

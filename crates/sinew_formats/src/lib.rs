@@ -1,4 +1,4 @@
-//! Reads and writes files as plain data: glTF, worlds, ragdolls, motion capture, MJCF, ragdolls of Jolt.
+//! Reads and writes files as plain data: glTF, worlds, ragdolls, motion capture, MJCF, Jolt ragdolls.
 //!
 //! ```
 //! use sinew_formats::{ReadOptions, no_files, read_gltf, write_gltf};

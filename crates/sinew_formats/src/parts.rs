@@ -41,7 +41,7 @@ fn read_rotation(at: At<'_>) -> Result<Rotation> {
     if (square - 1.0).abs() >= 1e-2 {
         return Err(at.malformed("quaternion must have length 1"));
     }
-    // A rotation that Sinew wrote is unchanged.
+    // A rotation that Sinew wrote is not normalised again, so that its bits stay the same.
     Ok(if (square - 1.0).abs() < 1e-6 { rotation } else { rotation.normalize() })
 }
 

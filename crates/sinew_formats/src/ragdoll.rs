@@ -75,13 +75,13 @@ use sinew_ragdoll::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 
 const VERSION: usize = 1;
 
-/// Most bodies: those of the largest joint tree. The number of pairs grows with the square of this number.
+/// Largest number of bodies, that of the largest joint tree. The number of pairs grows with its square.
 const MOST_BODIES: usize = 1024;
 /// Largest distance and largest size, metres.
 const FARTHEST: f32 = 1e6;
 /// Smallest size, metres.
 const SMALLEST: f32 = 1e-6;
-/// Range of masses, kg. Moments are from the square of the smallest mass to the largest, kg·m².
+/// Range of masses, kg. Moments of inertia are between the square of the smallest mass and the largest mass, kg·m².
 const LIGHTEST: f32 = 1e-9;
 const HEAVIEST: f32 = 1e12;
 
@@ -318,7 +318,7 @@ fn read_range(at: At<'_>) -> Result<Range> {
     let mut angles = [0.0; 2];
     for (angle, at) in angles.iter_mut().zip([lo, hi]) {
         let degrees = at.f64()?;
-        // Slightly more: half a turn in f32 radians is not exactly half a turn in degrees.
+        // The limit is slightly above 180°, because half a turn in f32 radians is not exactly 180°.
         if degrees.abs() > 180.001 {
             return Err(at.malformed("must lie between -180 and 180 degrees"));
         }

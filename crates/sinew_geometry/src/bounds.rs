@@ -4,19 +4,19 @@ use crate::boxes::{Aabb, HALF_SPACE_REACH};
 use crate::shape::Shape;
 use sinew_math::{Mat3, Transform, Vec3, abs3, max3, min3};
 
-/// Returns the bounds of a box that is transformed to the world.
+/// Returns the bounds of a transformed box, in the world.
 fn turned(bounds: &Aabb, world_from_frame: &Transform) -> Aabb {
     let (m, half) = (world_from_frame.rotation.to_mat3(), bounds.half_extents());
     let reach = abs3(m.x_axis) * half.x + abs3(m.y_axis) * half.y + abs3(m.z_axis) * half.z;
-    // The centre and the half extents are rounded.
+    // Covers the rounding errors of the centre and the half extents.
     let rounding = 1e-6 * max3(abs3(bounds.min), abs3(bounds.max)).length();
     Aabb::reaching(world_from_frame.point(bounds.center()), reach).expand(rounding)
 }
 
 impl Shape {
-    /// Bounds of the placed shape, tight except for rounding. Those of a half-space reach to [`HALF_SPACE_REACH`] on
-    /// every side; the top of a level half-space is its plane. Those of a mesh or height field are its own bounds,
-    /// rotated.
+    /// Returns the bounds of the placed shape, tight except for rounding. The bounds of a half-space extend to
+    /// [`HALF_SPACE_REACH`] on every side, but those of a level half-space end at its plane. The bounds of a mesh or
+    /// height field are not tight: they contain its local bounds, transformed.
     pub fn aabb(&self, world_from_shape: &Transform) -> Aabb {
         let (center, rotation) = (world_from_shape.translation, world_from_shape.rotation);
         match *self {
@@ -72,8 +72,8 @@ impl Shape {
     }
 }
 
-/// Reach of the unit disk across y along each axis. Uses the sines, because the cosine, near 1, would lose half of the
-/// digits.
+/// Returns the extent along each world axis of a unit disk perpendicular to the y axis of `m`. Uses the sines of the
+/// angles to y, because a cosine near 1 would lose half of the digits.
 fn disk_reach(m: &Mat3) -> Vec3 {
     let reach = |x: f32, z: f32| (x * x + z * z).sqrt();
     Vec3::new(reach(m.x_axis.x, m.z_axis.x), reach(m.x_axis.y, m.z_axis.y), reach(m.x_axis.z, m.z_axis.z))

@@ -23,7 +23,7 @@ const KINDS: [DataKind; 3] = [DataKind::Hull, DataKind::Mesh, DataKind::HeightFi
 const FIRST_TAG: u8 = 16;
 
 impl DataKind {
-    /// Tag of the kind in bytes, at least 16; lower tags belong to shapes without data.
+    /// Tag that identifies the kind in saved bytes, at least 16. Lower tags belong to shapes without data.
     pub fn tag(self) -> u8 {
         FIRST_TAG + self as u8
     }
@@ -75,7 +75,7 @@ impl Shape {
         }
     }
 
-    /// Reads the format of [`save_data`](Self::save_data).
+    /// Reads a shape of this kind from the bytes that [`save_data`](Self::save_data) writes.
     ///
     /// # Errors
     /// If the bytes are not those of a shape of this kind.

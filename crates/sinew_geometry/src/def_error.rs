@@ -1,7 +1,7 @@
-//! Rejection of a definition with invalid numbers.
+//! Error for a definition with invalid numbers.
 
-/// Rejection of a definition, a shape or a setting: the reason for the first invalid number. The text is one line in
-/// lower case without a full stop.
+/// Error for an invalid definition, shape or setting: the reason why its first invalid number is rejected. The text is
+/// one line in lower case without a full stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DefError {
     what: &'static str,

@@ -7,9 +7,10 @@ use sinew_math::{Transform, Vec3, clamp, normalize_or};
 
 impl Shape {
     /// Returns the distance from the surface to `point` (world), metres, negative inside, and the unit outward normal
-    /// (world) at the closest point of the surface. The distance is exact for every shape. Meshes and height fields are
-    /// surfaces, which may be open: the distance is negative behind the closest triangle, at any distance. If several
-    /// points are closest (for the centre of a box, or the axis of a capsule), the choice is deterministic.
+    /// (world) at the closest point of the surface. The distance is exact for every shape, except for rounding. Meshes
+    /// and height fields are surfaces, which may be open: the distance is negative if the point is behind the closest
+    /// triangle, however far. If several surface points are equally close (to the centre of a box, or to the axis of a
+    /// capsule), the choice is deterministic.
     pub fn signed_distance(&self, world_from_shape: &Transform, point: Vec3) -> (f32, Vec3) {
         let (distance, normal) = self.local_distance(world_from_shape.inverse_point(point));
         (distance, world_from_shape.rotation * normal)
@@ -50,12 +51,13 @@ impl Shape {
     }
 }
 
-/// Distance beyond its radius at which a particle behind a surface counts as on the other side, metres.
+/// Distance behind a surface, in excess of the ball's radius, at which the ball counts as on the other side, metres.
 const BEHIND: f32 = 0.01;
 
 impl Shape {
-    /// Like [`local_distance`](Self::local_distance), for a ball with this radius. A point well behind a surface gets a
-    /// positive distance, and distances above `reach` may be inexact.
+    /// Like [`local_distance`](Self::local_distance), for the centre `p` of a ball with this radius. If `p` is more
+    /// than the radius and 1 cm behind a mesh or height field, the ball counts as on the other side, and the distance
+    /// is positive. A mesh or height field further away than `reach` (metres) gives `reach`.
     pub fn ball_distance(&self, p: Vec3, radius: f32, reach: f32) -> (f32, Vec3) {
         let Some(surface) = self.surface() else { return self.local_distance(p) };
         let Some(closest) = surface.closest(p, reach) else { return (reach, Vec3::Y) };

@@ -42,9 +42,9 @@
 //! | [`hull`] | convex [hulls](Hull) of points: quickhull on a grid, exact decisions |
 //! | [`triangles`] | one-sided triangle [meshes](Mesh) and [height fields](HeightField) |
 //! | [`tree`] | bounding-volume trees with eight boxes in a node: overlaps, rays and sweeps, nearest |
-//! | [`cook`](cook::cook) | conversion of a triangle mesh to a few oriented boxes |
+//! | [`cook`](cook::cook) | approximation of a triangle mesh by a few oriented boxes |
 //! | [`submerged`] | the part of a shape below a plane |
-//! | [`revolved`], [`slabs`] | solids of revolution; lines through boxes, one or eight at a time |
+//! | [`revolved`], [`slabs`] | solids of revolution; the slab test of a line and a box, one or eight boxes at a time |
 //!
 //! # Measurements
 //! Overlap of two boxes, in milliseconds for 4,096 pairs in the cache and for 10,000 pairs from memory, with AVX2, next

@@ -1,4 +1,4 @@
-//! Mass, centre of mass and inertia of shapes, in closed form; hulls store theirs.
+//! Mass, centre of mass and inertia of shapes, in closed form; a hull stores its own.
 
 use crate::revolved::{self, TaperedCapsule, TruncatedCone};
 use crate::shape::{MassProperties, Shape};
@@ -88,7 +88,7 @@ impl MassProperties {
         if mass <= 0.0 {
             return Self { mass, center: self.center, inertia: self.inertia + other.inertia };
         }
-        // Measured from this centre, not from the origin, because a sum of large coordinates would lose the difference.
+        // Positions are relative to this centre, because sums of large coordinates would lose small differences.
         let apart = other.center - self.center;
         let reduced = self.mass * other.mass / mass;
         Self {

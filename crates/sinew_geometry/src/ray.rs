@@ -38,13 +38,14 @@ impl Ray {
 
 /// Largest component of a direction whose square is safe from overflow.
 const LONG: f32 = 1e15;
-/// Factor for directions longer than that: 2⁻⁹⁶, exact.
+/// Factor by which directions with a component above [`LONG`] are scaled: 2⁻⁹⁶, so that scaling is exact.
 const SHORTENED: f32 = f32::from_bits((127 - 96) << 23);
 
 /// First point of a ray in a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
-    /// Fraction of the ray before the hit, 0..=1; for a half-line, in lengths of its direction, ≥ 0.
+    /// Fraction of the ray before the hit, 0..=1. For a half-line the unit is the length of its direction, and the
+    /// fraction may exceed 1.
     pub fraction: f32,
     /// Hit point, world, metres.
     pub point: Vec3,
@@ -53,10 +54,10 @@ pub struct RayHit {
 }
 
 impl Shape {
-    /// Returns the first point of the ray inside the shape; `None` if there is none, or a number is not finite.
+    /// Returns the first point of the ray inside the shape; `None` if the ray misses, or a number is not finite.
     ///
-    /// A ray that starts inside or on the surface hits at fraction 0, with a normal opposite to its direction; if the
-    /// direction is zero, with the outward normal of the closest surface. This holds for every shape. A ray that starts
+    /// A ray that starts inside a solid or on its surface hits at fraction 0. The normal is opposite to the ray's
+    /// direction, or the outward normal at the closest surface point if the direction is zero. A ray that starts
     /// outside and points away never hits.
     ///
     /// Meshes and height fields are surfaces that may be open and have no inside. Rays hit their triangles from the
@@ -128,10 +129,10 @@ impl Shape {
     }
 }
 
-/// Distance beyond a face, metres, above which a point counts as outside without an exact distance.
+/// Distance beyond a face of a box, metres, above which a ray counts as starting outside, without the exact distance.
 pub const CLEARLY_OUTSIDE: f32 = 1e-6;
 
-/// Returns the first entry into any part of a union.
+/// Returns the earliest of the entries into the parts of a capsule.
 fn first_of(ends: [Option<(f32, Vec3)>; 2], side: Option<(f32, Vec3)>) -> Option<(f32, Vec3)> {
     ends.into_iter().chain([side]).flatten().reduce(|a, b| if b.0 < a.0 { b } else { a })
 }
@@ -141,9 +142,9 @@ fn enter_box(half: Vec3, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
     slabs.is_entered().then(|| (slabs.enter, Vec3::from_array(slabs.normal().to_array())))
 }
 
-/// Returns the entry into a ball, from the ray's closest point to the centre: the usual quadratic loses the ball's
-/// radius over a long distance (Haines et al., "Precision improvements for ray/sphere intersection", Ray Tracing Gems
-/// 2019).
+/// Returns the fraction and the normal at which a ray enters a ball. Computed from the ray's point closest to the
+/// centre, because the discriminant of the usual quadratic loses small radii at long distances (Haines et al.,
+/// "Precision improvements for ray/sphere intersection", Ray Tracing Gems 2019).
 fn enter_ball(center: Vec3, radius: f32, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
     let length_squared = direction.dot(direction);
     if length_squared <= f32::MIN_POSITIVE {
@@ -153,7 +154,7 @@ fn enter_ball(center: Vec3, radius: f32, origin: Vec3, direction: Vec3) -> Optio
     let middle = -offset.dot(direction) / length_squared;
     let closest = offset + direction * middle;
     let depth = radius * radius - closest.dot(closest);
-    // The comparison is false for NaN, which squares that overflow produce.
+    // The comparison is false for NaN, which overflowing squares produce.
     if !(depth >= 0.0 && middle >= 0.0) {
         return None;
     }

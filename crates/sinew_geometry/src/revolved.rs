@@ -1,5 +1,5 @@
-//! Solids of revolution about y: cylinders and cones as truncated cones, tapered capsules, and their slices. Lengths are
-//! metres.
+//! Solids of revolution about y: cylinders and cones as truncated cones, tapered capsules, and their slices. Lengths
+//! are metres.
 
 use crate::shape::MassProperties;
 use core::f32::consts::PI;
@@ -32,8 +32,8 @@ fn to_profile(p: Vec3) -> Vec2 {
     Vec2::new((p.x * p.x + p.z * p.z).sqrt(), p.y)
 }
 
-/// Converts a direction in the half-plane through the axis and `p` to three dimensions; the half-plane contains x if
-/// `p` is on the axis.
+/// Converts a direction from the half-plane through the axis and `p` to three dimensions. If `p` is on the axis, the
+/// half-plane through the x axis is used.
 fn from_profile(v: Vec2, p: Vec3) -> Vec3 {
     let out = (p.x * p.x + p.z * p.z).sqrt();
     let (x, z) = if out > 1e-18 { (p.x / out, p.z / out) } else { (1.0, 0.0) };
@@ -78,7 +78,7 @@ impl TruncatedCone {
         let along = high - low;
         let t = clamp((q - low).dot(along) / along.dot(along), 0.0, 1.0);
         if beyond_side > 0.0 && t > 0.0 && t < 1.0 {
-            // Near the side, the normal of the side is exact at any distance.
+            // If the side is closest, its normal is exact at any distance.
             return (beyond_side, from_profile(side, p));
         }
         let candidates =
@@ -127,8 +127,8 @@ impl TruncatedCone {
         let a = dx * dx + dz * dz - growth * growth;
         let half_b = x * dx + z * dz - radius * growth;
         let root = half_b * half_b - a * c;
-        // First root after the start, in the form without cancellation; no root if the line does not come closer to the
-        // side.
+        // First root after the start, in the form without cancellation. The quadratic has no such root if the line does
+        // not approach the side.
         let steep = root.sqrt() - half_b;
         if root < 0.0 || steep <= 0.0 {
             return None;
@@ -152,8 +152,8 @@ impl TruncatedCone {
 }
 
 impl TaperedCapsule {
-    /// Creates the convex hull of a ball of radius `bottom` around −`half_height` and a ball of radius `top` around
-    /// `half_height`.
+    /// Creates the convex hull of a ball of radius `bottom` around y = −`half_height` and a ball of radius `top` around
+    /// y = `half_height`.
     pub fn new(half_height: f32, bottom: f32, top: f32) -> Self {
         Self { half_height, bottom, top }
     }
@@ -165,7 +165,8 @@ impl TaperedCapsule {
         Vec2::new(max((1.0 - sin) * (1.0 + sin), 0.0).sqrt(), sin)
     }
 
-    /// Returns the part between the circles along which the side touches the balls, and the height of its centre.
+    /// Returns the truncated cone between the circles along which the side touches the balls, and the height of that
+    /// cone's centre.
     pub fn side(&self) -> (TruncatedCone, f32) {
         let n = self.side_normal();
         let (low, high) = (-self.half_height + self.bottom * n.y, self.half_height + self.top * n.y);
@@ -183,7 +184,8 @@ impl TaperedCapsule {
     /// Returns the signed distance and the outward normal at the closest point of the surface.
     pub fn distance(&self, p: Vec3) -> (f32, Vec3) {
         let (q, n) = (to_profile(p), self.side_normal());
-        // Height at which the normal of the side through the point meets the axis, times the cosine, which may be 0.
+        // The line through the point along the side's normal meets the axis at this height divided by the cosine `n.x`,
+        // which may be 0.
         let foot = q.y * n.x - q.x * n.y;
         let reach = self.half_height * n.x;
         if foot.abs() < reach {
@@ -204,8 +206,7 @@ impl TaperedCapsule {
         let sin = (bottom - top) / (2.0 * h);
         let (low, high) = (-h + bottom * sin, h + top * sin);
         let ball = |center: f64, radius: f64| [radius * radius - center * center, 2.0 * center, -1.0];
-        // Along the side the radius is linear: the radius of the ball around the foot of the normal, divided by the
-        // cosine.
+        // Along the side the radius is a linear function of the height, from one circle to the other.
         let cos = ((1.0 - sin) * (1.0 + sin)).sqrt();
         let (start, end) = (bottom * cos, top * cos);
         let slope = (end - start) / (high - low);
@@ -264,14 +265,14 @@ impl Slice {
     }
 }
 
-/// Volume of stacked slices, m³.
+/// Returns the total volume of slices, m³.
 pub fn volume(slices: &[Slice]) -> f32 {
     (slices.iter().map(|slice| slice.integrals()[0]).sum::<f64>() * f64::from(PI)) as f32
 }
 
-/// Mass properties of stacked slices at `density` (kg/m³), in their frame.
+/// Returns the mass properties of slices of one solid at `density` (kg/m³), in the frame of the solid.
 ///
-/// A disk of radius r and of mass m has `½ m r²` about the axis and `¼ m r²` about a diameter.
+/// A disk of radius r and mass m has the moment of inertia `½ m r²` about the axis and `¼ m r²` about a diameter.
 pub fn mass_properties(slices: &[Slice], density: f32) -> MassProperties {
     let mut sums = [0.0; 4];
     for slice in slices {

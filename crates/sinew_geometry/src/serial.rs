@@ -1,4 +1,4 @@
-//! Shapes with data in serde formats: stores the source data, from which the shape is rebuilt.
+//! Serde formats of shapes with data. They store the source data; deserialization builds the shape again.
 
 use crate::hull::Hull;
 use crate::triangles::{HeightField, HeightFieldDef, Mesh};

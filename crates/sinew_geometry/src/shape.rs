@@ -7,7 +7,8 @@ use crate::triangles::{HeightField, Mesh, MeshError, Surface};
 use sinew_math::{Sym3, Vec3, abs3, max, max3, min};
 use std::sync::Arc;
 
-/// A shape in its own frame. All sizes are metres and positive. Convex, except meshes and height fields.
+/// A shape in its own frame. All sizes are in metres and positive unless noted. All shapes are convex, except meshes
+/// and height fields.
 #[doc(alias = "collider")]
 #[doc(alias = "SharedShape")]
 #[derive(Clone, Debug, PartialEq)]
@@ -58,8 +59,8 @@ pub enum Shape {
     HalfSpace,
     /// Convex solid with flat faces; its origin may be outside.
     Hull(#[cfg_attr(feature = "serde", serde(with = "crate::serial::hull"))] Arc<Hull>),
-    /// Surface of one-sided triangles. It has no mass of its own: for static and kinematic bodies, or with a given
-    /// mass.
+    /// Surface of one-sided triangles. It has no volume and so no mass of its own: use it for static and kinematic
+    /// bodies, or give the body a mass.
     Mesh(#[cfg_attr(feature = "serde", serde(with = "crate::serial::mesh"))] Arc<Mesh>),
     /// Terrain over the x and z axes, solid from above. Like a mesh, it has no mass of its own.
     HeightField(#[cfg_attr(feature = "serde", serde(with = "crate::serial::height_field"))] Arc<HeightField>),
@@ -114,11 +115,11 @@ impl Shape {
 }
 
 impl Shape {
-    /// Checks that the sizes are finite and positive (a capsule's half height may be 0) and form a shape of its kind;
-    /// returns the reason otherwise.
+    /// Checks that the sizes are finite and positive (a capsule's half height may be 0), and that no end of a tapered
+    /// capsule contains the other.
     ///
     /// # Errors
-    /// The reason, in lower case.
+    /// The reason for the first invalid size, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         // The comparison is false for NaN, so NaN is rejected.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
@@ -153,8 +154,8 @@ impl Shape {
         }
     }
 
-    /// Radius of the largest inscribed ball, metres: half the least width. For a cone a slightly smaller radius; for a
-    /// hull the ball is around its centre. Infinite for half-spaces, meshes and height fields.
+    /// Radius of the largest inscribed ball, metres. For a hull, the ball is centred at the hull's centre of mass.
+    /// Infinite for half-spaces, meshes and height fields.
     #[inline]
     pub fn inner_radius(&self) -> f32 {
         match *self {
@@ -162,8 +163,8 @@ impl Shape {
             Self::Sphere { radius } | Self::Capsule { radius, .. } => radius,
             Self::TaperedCapsule { radius_bottom, radius_top, .. } => max(radius_bottom, radius_top),
             Self::Cylinder { half_height, radius } => min(half_height, radius),
-            // Radius of the circle inscribed in the generating triangle of a cone: twice the area divided by the
-            // perimeter.
+            // Radius of the circle inscribed in the cone's cross section, an isosceles triangle: twice the triangle's
+            // area divided by its perimeter.
             Self::Cone { half_height, radius } => {
                 let slant = (radius * radius + 4.0 * half_height * half_height).sqrt();
                 2.0 * half_height * (radius / (radius + slant))
@@ -194,14 +195,14 @@ impl Shape {
         }
     }
 
-    /// True if the shape has a volume, and so a mass by its density.
+    /// True if the shape has a volume, from which a density gives its mass.
     #[inline]
     pub fn is_solid(&self) -> bool {
         !matches!(self, Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_))
     }
 
-    /// Least width of the shape, metres; slop and speculative distance scale with it. Infinite for half-spaces, meshes
-    /// and height fields.
+    /// Twice the [`inner_radius`](Self::inner_radius), metres; slop and speculative distance scale with it. Infinite
+    /// for half-spaces, meshes and height fields.
     #[inline]
     pub fn smallest_extent(&self) -> f32 {
         2.0 * self.inner_radius()

@@ -1,12 +1,14 @@
-//! Lines through boxes, one or eight at a time: slabs (Kay & Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986).
+//! Slab test of a line and a box, for one or eight boxes at a time (Kay & Kajiya, "Ray tracing complex scenes",
+//! SIGGRAPH 1986).
 
 use sinew_math::lanes::{Real, Vector3};
 
-/// A line and the three slabs whose intersection is a box, in the box's frame.
+/// Intersection of a line with the three slabs of a box, in the box's frame. A slab is the space between two opposite
+/// faces.
 pub struct Slabs<R: Real> {
-    /// Fraction at which the line has entered all slabs to which it is not parallel.
+    /// Fraction of the line at which it enters the last of the slabs to which it is not parallel.
     pub enter: R,
-    /// Fraction at which the line leaves the first of these slabs.
+    /// Fraction of the line at which it leaves the first of these slabs.
     leave: R,
     /// True if the line is parallel to a slab and outside it.
     beside: R::Mask,

@@ -3,7 +3,7 @@
 
 use crate::{Rotation, Sym3, Transform, Vec3};
 
-/// Read error: what is wrong with the bytes, and at which offset.
+/// Error of a [`Reader`]: what is wrong with the bytes, and at which offset.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError {
     /// Offset of the byte at which reading failed.
@@ -31,7 +31,8 @@ impl Writer {
     pub fn new() -> Self {
         Self::default()
     }
-    /// Writer that reuses the memory of `bytes` (its content is dropped), so that a warm snapshot need not allocate.
+    /// Creates an empty writer that reuses the memory of `bytes` and drops their content, so that repeated snapshots do
+    /// not allocate.
     pub fn reuse(mut bytes: Vec<u8>) -> Self {
         bytes.clear();
         Self { bytes }
@@ -44,7 +45,7 @@ impl Writer {
     pub fn into_bytes(self) -> Vec<u8> {
         self.bytes
     }
-    /// Appends bytes as they are, without a length.
+    /// Appends bytes unchanged, without a byte count.
     pub fn raw(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
     }
@@ -96,7 +97,7 @@ impl Writer {
     pub fn count(&mut self, n: usize) {
         self.u32(u32::try_from(n).expect("a snapshot holds at most 2^32 items of a kind"));
     }
-    /// Writes a byte count, then what `write` writes, so that a reader cannot read too much or too little.
+    /// Writes a byte count, then the bytes that `write` writes, so that a reader of the block cannot read beyond it.
     ///
     /// # Panics
     /// If the block is 4 GiB or larger.

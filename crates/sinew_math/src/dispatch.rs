@@ -1,4 +1,4 @@
-//! Runs kernels on the widest registers of the processor, with the same bits on each.
+//! Runs kernels with the widest SIMD registers of the processor; the results have the same bits on every processor.
 //!
 //! ```
 //! use sinew_math::dispatch::{self, Kernel};
@@ -25,7 +25,7 @@
 
 use crate::lanes::{Lanes, Scalar};
 
-/// A loop over data, written once for all processors.
+/// A loop over data that is written once, generic over the SIMD type, and compiled for each [`Level`].
 pub trait Kernel {
     /// Result of the loop.
     type Output;
@@ -35,7 +35,7 @@ pub trait Kernel {
     fn run<L: Lanes>(self) -> Self::Output;
 }
 
-/// Register set that holds eight lanes.
+/// SIMD registers that hold eight lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Level {
     /// Eight scalars.

@@ -1,4 +1,4 @@
-//! A 64-bit hash that is the same on every machine and in every version of this crate's major line.
+//! A 64-bit hash that is the same on every machine and in all releases of this crate with the same major version.
 
 /// Hash of `bytes`, as [`StableHasher`] computes it.
 pub fn hash_bytes(bytes: &[u8]) -> u64 {
@@ -7,8 +7,8 @@ pub fn hash_bytes(bytes: &[u8]) -> u64 {
     hasher.finish()
 }
 
-/// Streaming hash: mixes eight bytes at a time into the state by a folded 64×64→128-bit product. Splitting the
-/// input differently gives the same hash. The hash does not resist adversaries.
+/// Streaming hash: mixes eight bytes at a time into the state by a folded 64×64→128-bit product. The hash does not
+/// depend on how the input is split into calls. It is not secure against deliberate collisions.
 #[derive(Clone, Debug)]
 pub struct StableHasher {
     state: u64,

@@ -13,11 +13,11 @@
 //!
 //! | as | type | good for | watch for |
 //! |---|---|---|---|
-//! | four numbers of length 1 | [`Rotation`] | everything: products, blends, integration | q and −q are the same turn |
+//! | unit quaternion | [`Rotation`] | everything: products, blends, integration | q and −q are the same rotation |
 //! | axis × angle | [`Vec3`], by [`Rotation::to_scaled_axis`] | rates, small turns, averages | at most half a turn |
 //! | nine numbers | [`Mat3`], by [`Rotation::to_mat3`] | many vectors, other libraries | drift: [`MatrixDrift`], [`orthonormalize`] |
 //! | three angles | [`EulerAngles`], by [`Rotation::to_euler`] | people, files | 24 meanings, [`GimbalLock`] in each |
-//! | two vectors | [`Rotation::from_arc`], [`Quaternion::quotient`] | aiming | opposite vectors name no axis |
+//! | two vectors | [`Rotation::from_arc`], [`Quaternion::quotient`] | aiming | opposite vectors define no axis |
 //! | stretch and turn | [`Quaternion`] | Hamilton's algebra | holds the whole angle, [`Rotation`] the half |
 #![deny(unsafe_code)] // `lanes` and `dispatch` alone allow it
 
@@ -92,7 +92,8 @@ pub fn normalize_or(v: Vec3, fallback: Vec3) -> Vec3 {
     if length > 1e-12 && length < f32::INFINITY { v / length } else { fallback }
 }
 
-/// Returns the direction and the length of a finite vector; zero has no direction. A length that overflows is `f32::MAX`.
+/// Returns the direction and the length of a finite vector. The direction of zero is zero. A length that overflows is
+/// `f32::MAX`.
 #[inline]
 pub fn direction_and_length(v: Vec3) -> (Vec3, f32) {
     (normalize_or(v, direction(v).unwrap_or(Vec3::ZERO)), min(v.length(), f32::MAX))

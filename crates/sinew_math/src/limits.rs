@@ -56,7 +56,7 @@ pub struct SwingTwistLimit {
     pub twist: Range,
 }
 
-/// State of one limit near or past its stop.
+/// State of a joint at one stop of a limit: distance and gradient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitState {
     /// Distance to the stop, radians; negative when violated.

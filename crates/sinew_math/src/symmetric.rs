@@ -17,7 +17,7 @@ impl Sym3 {
     /// The unit matrix.
     pub const IDENTITY: Self = Self { diagonal: Vec3::ONE, off: Vec3::ZERO };
 
-    /// Makes a diagonal matrix.
+    /// Creates a diagonal matrix.
     pub const fn from_diagonal(diagonal: Vec3) -> Self {
         Self { diagonal, off: Vec3::ZERO }
     }
@@ -30,7 +30,7 @@ impl Sym3 {
         }
     }
 
-    /// Returns `R D Rᵀ`: principal values `d` in a frame turned by `rotation`.
+    /// Returns `R D Rᵀ`: the tensor with the principal values `d` along the axes of `rotation`.
     #[inline]
     pub fn from_rotated_diagonal(rotation: Rotation, d: Vec3) -> Self {
         let m = rotation.to_mat3();
@@ -49,7 +49,7 @@ impl Sym3 {
         }
     }
 
-    /// Returns `R S Rᵀ`: the same tensor in axes turned by `rotation`.
+    /// Returns `R S Rᵀ`: the tensor rotated by `rotation`.
     pub fn rotated(self, rotation: Rotation) -> Self {
         let r = rotation.to_mat3();
         Self::from_mat3(&(r * self.to_mat3() * r.transpose()))

@@ -21,7 +21,7 @@ impl Transform {
         Self { translation, rotation }
     }
 
-    /// Makes a pure translation.
+    /// Creates a pure translation.
     #[inline(always)]
     pub const fn from_translation(translation: Vec3) -> Self {
         Self { translation, rotation: Rotation::IDENTITY }
@@ -88,7 +88,7 @@ impl Affine {
     /// The identity map.
     pub const IDENTITY: Self = Self { linear: Mat3::IDENTITY, translation: Vec3::ZERO };
 
-    /// Makes a map that scales (per axis), then rotates, then translates.
+    /// Creates a map that scales (per axis), then rotates, then translates.
     pub fn from_scale_rotation_translation(scale: Vec3, rotation: Rotation, translation: Vec3) -> Self {
         let m = rotation.to_mat3();
         Self {
@@ -109,7 +109,7 @@ impl Affine {
         self.linear * p + self.translation
     }
 
-    /// Returns the image of a direction (no translation).
+    /// Returns the image of a direction; the translation does not apply.
     #[inline]
     pub fn vector(&self, v: Vec3) -> Vec3 {
         self.linear * v
@@ -149,8 +149,8 @@ impl Mul for Affine {
 }
 /// Returns the inverse of a 3×3 matrix by its cofactors; not finite if it has none.
 ///
-/// The inverse of glam has another order of operations since 0.33, and other bits. This function keeps its bits for
-/// every version of glam.
+/// The inverse of glam has had another order of operations, and so other bits, since version 0.33. This function has
+/// the same bits with every version of glam.
 pub fn inverse3(m: &Mat3) -> Mat3 {
     let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
     let cofactors = [y.cross(z), z.cross(x), x.cross(y)];

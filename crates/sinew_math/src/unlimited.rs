@@ -10,7 +10,7 @@ pub fn serialize<S: Serializer>(x: &f32, serializer: S) -> Result<S::Ok, S::Erro
     x.is_finite().then_some(*x).serialize(serializer)
 }
 
-/// Reads a number; `None` is infinite.
+/// Reads a number; `None` becomes infinity.
 ///
 /// # Errors
 /// Errors of the deserializer.

@@ -9,8 +9,8 @@ use crate::playback::sync::match_place;
 use crate::set::{AnimatedClip, AnimationSet};
 use sinew_math::Transform;
 
-/// Shortest clip or span that is looped, seconds: a shorter one would repeat too often in an update, so it stands
-/// still. Fed poses closer together in time give no velocity.
+/// Shortest clip that is looped, seconds. A shorter clip would repeat too often in an update, so its time does not
+/// advance. Fed poses that are closer together in time give no velocity.
 pub(super) const SHORTEST: f64 = 1e-4;
 
 /// Part of an update in which a track plays without interruption.
@@ -217,13 +217,13 @@ fn run(set: &AnimationSet, slot: &mut Slot, i: usize, stretch: Stretch, out: &mu
     }
 }
 
-/// Clamps a time to the update, because it is rounded.
+/// Clamps a time to the update; rounding may put it just outside.
 fn within(moment: f64, seconds: f64) -> f64 {
     let inside = if moment > 0.0 { moment } else { 0.0 };
     if inside < seconds { inside } else { seconds }
 }
 
-/// Clamps a step to the direction of play, because phases are rounded.
+/// Clamps a step to the direction of play; rounding of phases may reverse a tiny step.
 fn onward(from: Place, to: Place, speed: f64) -> Place {
     let is_back = if speed < 0.0 { to > from } else { to < from };
     if is_back { from } else { to }

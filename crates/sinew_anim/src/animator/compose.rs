@@ -25,7 +25,7 @@ impl WeightedMotion {
     }
 }
 
-/// Makes an empty list that reuses the memory of `layers`.
+/// Returns an empty list that reuses the memory of `layers`.
 fn recycled<'a>(layers: Vec<BlendLayer<'_>>) -> Vec<BlendLayer<'a>> {
     layers.into_iter().map_while(|_| None).collect()
 }
@@ -108,7 +108,7 @@ impl Animator {
         room.layers = recycled(layers);
         for slot in self.slots.iter_mut().filter(|slot| slot.is_crossfaded && slot.track.def.layer == layer) {
             let def = &slot.track.def;
-            // A pose without weight has not been sampled.
+            // The pose of a track without weight was not sampled.
             if def.weight > 0.0 {
                 let mask = def.mask.map(|mask| set.mask(mask));
                 slot.crossfade.mix(&slot.pose, def.weight, mask, &mut room.weights, pose);

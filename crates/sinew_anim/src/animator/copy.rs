@@ -3,8 +3,8 @@
 use super::{Animator, Slot};
 
 impl Animator {
-    /// Makes this animator a copy of another one of the same set, for looking ahead. Unlike `clone`, it allocates only
-    /// for more tracks or joints than before.
+    /// Makes this animator a copy of another animator of the same set, for instance to predict poses. Unlike `clone`,
+    /// it allocates only for more tracks or joints than before.
     ///
     /// # Panics
     /// If the rigs of the two animators have different numbers of joints.

@@ -1,8 +1,8 @@
 //! Crossfades between two playing motions, which may be far apart.
 //!
-//! The mean of two opposite rotations is undefined, and every choice of hemispheres jumps there. A crossfade has
-//! memory, unlike a blend: at the start it chooses the shorter way from the old pose to the new one, and keeps that
-//! way. The joint turns about one axis at the speed of the easing (Shoemake, "Animating rotation with quaternion
+//! The mean of two opposite rotations is undefined, and every choice of hemispheres has a jump there. Unlike a blend, a
+//! crossfade has state: at the start it chooses the shorter rotation from the old pose to the new one, and keeps that
+//! direction. The joint turns about one axis at the speed of the easing (Shoemake, "Animating rotation with quaternion
 //! curves", 1985), so its acceleration is at most `6 |x₀|/t₁² + 3 |v₀|/t₁` for a distance `x₀` and a relative speed
 //! `v₀`.
 
@@ -35,7 +35,7 @@ impl Weights {
         }
     }
 
-    /// Share of `full` that is missing from the joint's sum of weights.
+    /// Share of `full` by which the joint's sum of weights falls short of it.
     fn missing(&self, joint: usize, full: f32) -> f32 {
         let sum = self.0[joint];
         if sum < full { 1.0 - sum / full } else { 0.0 }

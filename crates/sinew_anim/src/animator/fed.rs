@@ -24,9 +24,9 @@ pub(super) struct Fed {
 }
 
 impl Animator {
-    /// Sets a clip's pose from outside, from the next update on: its tracks then show that pose instead of their
-    /// channels. For another engine's animation or hand tracking: use a clip without channels, and call this method
-    /// before each update.
+    /// Sets the pose of a clip from the next update on; the clip's tracks then show this pose instead of its channels.
+    /// For motion from another engine or from hand tracking, use a clip without channels, and call this method before
+    /// each update.
     ///
     /// Events and root motion remain those of the clip. In an update without a new pose, as in an animator that looks
     /// ahead, joints continue at their last velocity for at most 0.1 s. Only one clip at a time can have such a pose.

@@ -49,7 +49,7 @@ impl Beside {
     }
 }
 
-/// Largest difference of two times that count as one, seconds: the times of a group's tracks are rounded.
+/// Largest difference of two times that count as equal, seconds; it covers the rounding of a sync group's times.
 const MOMENT: f64 = 1e-9;
 
 impl Animator {

@@ -2,7 +2,7 @@
 
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
-/// A velocity of the root: model axes.
+/// Velocity of the root, in model axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct RootVelocity {
     /// Linear velocity, file units per second.

@@ -115,9 +115,10 @@ pub enum ClipBuildError {
 impl BuiltClip {
     /// Quantises a clip for a rig.
     ///
-    /// Rotations have 47 bits (the three smallest numbers of the quaternion). Translations and scales have 48, in the
-    /// bounds of their own channel. Splines and wide arcs get extra keys; a step becomes two keys at neighbouring
-    /// times. If two channels move the same property, the later one counts, as in
+    /// Rotations have 48 bits (the three smallest components of the quaternion, and which one is the largest).
+    /// Translations and scales have 48 bits within the bounds of their own channel. Splines and wide arcs get extra
+    /// keys; a step becomes two keys at neighbouring times. If two channels move the same property, the later one
+    /// counts, as in
     /// [`sample`](crate::clip::sample::sample()). A constant channel has no keys.
     ///
     /// # Errors
@@ -198,7 +199,7 @@ impl BuiltClip {
         let bounds = |b: &Bounds| [b.low[0], b.low[1], b.low[2], b.step[0], b.step[1], b.step[2]];
         self.translations.hash(&mut hasher, bounds);
         self.scales.hash(&mut hasher, bounds);
-        // The value 0 stands for a cursor without a clip, so set the lowest bit.
+        // A cursor without a clip has the value 0, so the lowest bit is set.
         hasher.finish() | 1
     }
 }

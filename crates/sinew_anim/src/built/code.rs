@@ -51,9 +51,9 @@ impl Code<3> for Bounds {
     }
 }
 
-/// A unit quaternion without its component of largest magnitude, which follows from the other three. These are at most
-/// √½ and have 15 bits each, with 0 exact. Of the three remaining bits, two name the omitted component and one is its
-/// sign, so that keys of a track stay on one hemisphere.
+/// A unit quaternion without its component of largest magnitude, which follows from the other three ("smallest three").
+/// The other three are at most √½ and have 15 bits each, with 0 exact. Of the three remaining bits, two are the index
+/// of the largest component and one is its sign, so that keys of a track stay on one hemisphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct SmallestThree;
 
@@ -64,8 +64,8 @@ const STEP: f32 = core::f32::consts::FRAC_1_SQRT_2 / HALF;
 /// The highest of the 16 bits.
 const FLAG: u16 = 0x8000;
 
-/// Largest angle, radians, between a unit quaternion and its quantised form. Each of the three numbers is off by at
-/// most half a step, the fourth (the largest) by three times that; an angle is twice the chord.
+/// Largest angle, radians, between a unit quaternion and its quantised form. Each of the three stored components is off
+/// by at most half a step, the largest component by three times that. The angle of the rotation is twice that chord.
 pub(super) const ROTATION_BOUND: f32 = 1.51e-4;
 
 impl SmallestThree {
@@ -119,7 +119,7 @@ mod tests {
         let mut worst: f64 = 0.0;
         for i in 0..200_000 {
             let half = f32::from(i % 3 == 0);
-            // Every third rotation is near equal numbers, the worst case.
+            // Every third rotation has nearly equal components, the worst case.
             let q = random.rotation();
             let q = Rotation::from_xyzw(q.x, q.y + half, q.z + half, q.w + half).normalize();
             let [x, y, z, w] = SmallestThree.decode(SmallestThree::encode(q));

@@ -12,7 +12,7 @@ const UNSET: u32 = u32::MAX / 2;
 /// Index of a left key before the first key, so that the first key follows it.
 const BEFORE: u32 = u32::MAX;
 
-/// Time beyond all times, in either sign. Finite, so that interpolation with it stays finite.
+/// Time later than all key times; its negative is earlier. It is finite, so that interpolation with it stays finite.
 const FOREVER: f32 = 1e30;
 
 /// The two keys around a time, for eight tracks side by side.
@@ -45,8 +45,8 @@ impl<const N: usize> Span<N> {
 
 /// Playback state of a character in a clip: the decoded keys around its last time.
 ///
-/// A cursor is a cache. A stale one, after another clip or a jump, costs time but never changes the pose. Its size is
-/// 360 bytes per eight animated rotations, and 296 per eight translations or scales.
+/// A cursor is a cache. After another clip or a jump in time it is slower for one call, but it never changes the pose.
+/// It has 360 bytes per eight animated rotations, and 296 bytes per eight animated translations or scales.
 #[derive(Clone, Debug, Default)]
 pub struct Cursor {
     fingerprint: u64,

@@ -94,8 +94,9 @@ fn straight(channel: &Channel, time: f32) -> [f32; 4] {
     value
 }
 
-/// Splits a turn at constant speed into equal parts such that `nlerp` is off by at most `tolerance` radians in each.
-/// For turns up to a sixth of a circle the error is 0.0037 times the cube of the angle, from the series of both.
+/// Splits a rotation at constant speed into equal parts such that the error of `nlerp` is at most `tolerance` radians
+/// in each. For angles up to a sixth of a circle the error is 0.0037 times the cube of the angle, by the series of
+/// `nlerp` and `slerp`.
 fn split_turn(channel: &Channel, from: f32, to: f32, tolerance: f32, times: &mut Vec<f32>) {
     let ends = [from, to].map(|time| rotation(straight(channel, time)));
     let angle = angle_between(ends[0], ends[1]);

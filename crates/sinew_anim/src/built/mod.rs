@@ -94,7 +94,7 @@ impl BuiltClip {
         self.bound
     }
 
-    /// Value of joints without a channel; it differs between blended and additive clips.
+    /// Kind of value of joints without a channel: the rest pose in blended clips, no change in additive clips.
     pub fn fill(&self) -> Fill {
         self.fill
     }

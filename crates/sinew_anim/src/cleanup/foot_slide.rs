@@ -105,8 +105,9 @@ fn shifts_of(
     shifts
 }
 
-/// Vertical shift of a ball that is `below` the floor (negative: above it), metres. The shift is full within a sixtieth
-/// of the leg and zero from three times that distance, so that a foot that is about to leave is not pressed down again.
+/// Returns the vertical shift of a ball of the foot that is `below` the floor (negative: above it), metres. Within a
+/// sixtieth of the leg's length the shift brings the ball to the floor; from three times that distance it is zero, so
+/// that a foot that is about to leave the floor is not pressed down again.
 fn down_to(below: f32, leg: f32) -> f32 {
     let near = leg / 60.0;
     below * (1.0 - smoothstep((-below - near) / (2.0 * near)))

@@ -5,7 +5,7 @@ use crate::learned_limits::LearnedLimit;
 use crate::rig::JointIdx;
 use sinew_math::max;
 
-/// Excess of a joint beyond its limit.
+/// How often and how far a joint was beyond its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointExcess {
     /// Joint that exceeded its limit.

@@ -15,7 +15,7 @@ pub struct PenetrationReport {
     pub frames: usize,
     /// Largest depth below the floor, metres.
     pub deepest: f32,
-    /// Largest lift, metres: at least `deepest`.
+    /// Largest height by which the body was raised, metres; at least `deepest`.
     pub raised: f32,
 }
 

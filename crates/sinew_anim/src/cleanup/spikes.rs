@@ -71,7 +71,7 @@ fn step(a: LocalTransform, b: LocalTransform) -> [f32; 2] {
     [a.rotation.angle_to(b.rotation), (a.translation - b.translation).length()]
 }
 
-/// Returns the upper quartile of the joint's steps, rotation and translation: its normal motion.
+/// Returns the upper quartiles of the joint's rotations and shifts from frame to frame, as its usual motion.
 fn usual_steps(track: &[LocalTransform]) -> [f32; 2] {
     [0, 1].map(|which| {
         let mut steps: Vec<f32> = track.windows(2).map(|pair| step(pair[0], pair[1])[which]).collect();

@@ -78,7 +78,7 @@ impl Clip {
             let width = channel.property.width();
             let is_cubic = channel.interpolation == Interpolation::CubicSpline;
             for (i, number) in channel.values.chunks_exact_mut(width).enumerate() {
-                // Tangents are differences already; subtracting a constant does not change them.
+                // Tangents are derivatives, so subtracting a constant does not change them.
                 let is_tangent = is_cubic && i % 3 != 1;
                 match (channel.property, number) {
                     (Property::Rotation, [x, y, z, w]) => {

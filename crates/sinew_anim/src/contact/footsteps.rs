@@ -55,7 +55,7 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     let lap = take.duration() as f32;
     let repeats = is_loop(&take, feet[0].length / analysis.unit_scale);
     if repeats {
-        // Two laps, so that a step at the seam is whole; the lap between the two seams is evaluated.
+        // Two laps are searched, so that a step at the seam is complete; the footfalls of one lap are kept.
         take.poses.extend_from_within(take.joints..);
     }
     let root = analysis.character_from_file();
@@ -67,7 +67,7 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
         ground.velocity = strides_on_the_spot(&take, &points, &settings).unwrap_or(Vec3::ZERO);
     }
     if ground.velocity.length() > settings.run {
-        // The feet of a runner touch the ground half as long as those of a walker.
+        // A runner's foot is on the ground for about half as long as a walker's.
         settings.shortest *= 0.5;
     }
     let points = ground.seen_from(&take, points);
@@ -87,8 +87,9 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     Ok(Footsteps { events, speed: ground.velocity.length() })
 }
 
-/// Velocity of the ground under a looped walk on the spot whose feet move back at changing speeds, as drawn walks do, m/s:
-/// the mean velocity of the lower foot. `None` if that foot does not mostly move one way, or one foot is rarely lower.
+/// Velocity of the ground under a looped walk on the spot whose feet move back at changing speeds, as drawn walks do,
+/// m/s: the mean velocity of the lower foot. `None` if that foot does not mostly move one way, or one foot is rarely
+/// lower.
 fn strides_on_the_spot(take: &Take, points: &[[[Vec3; 2]; 2]], settings: &ContactSettings) -> Option<Vec3> {
     let middle = |foot: [Vec3; 2]| (foot[0] + foot[1]) * 0.5;
     let steps: Vec<(usize, Vec3)> = points

@@ -37,8 +37,8 @@ pub fn sole_points(rig: &Rig, root: &Affine, feet: &[Foot; 2], take: &Take) -> V
     (0..take.frames()).map(points).collect()
 }
 
-/// Height of the floor under a motion, metres: in nine of ten frames the lowest point of both feet is at or above it,
-/// so that noise has no effect. `points` are those of [`sole_points`], metres, y up; 0 for none.
+/// Returns the height of the floor under a motion, metres. In nine of ten frames the lowest point of both feet is at or
+/// above it; the tenth is ignored as noise. `points` are those of [`sole_points`], metres, y up. 0 without points.
 pub fn floor_under(points: &[[[Vec3; 2]; 2]]) -> f32 {
     tenth(points.iter().map(lowest).collect())
 }
@@ -75,7 +75,7 @@ impl Ground {
         let alike = |step: Vec3| (step - velocity).length() < 0.3 * velocity.length();
         let of_foot = |foot: usize| steps.iter().filter(|&&(k, step)| k == foot && alike(step)).count();
         let (left, right) = (of_foot(0), of_foot(1));
-        // A runner is in the air for most of the time.
+        // Each foot of a runner is off the ground most of the time.
         let least = if velocity.length() > settings.run { RUN_STANDS } else { WALK_STANDS };
         let mostly = 2 * (left + right) > steps.len() && least * steps.len() > points.len();
         let take_turns = 4 * usize::min(left, right) > left + right;
@@ -97,8 +97,8 @@ impl Ground {
 /// Returns the tilt of each sole while the foot stands, radians, positive for toes up, and the feet with soles
 /// flattened by it.
 ///
-/// The tilt of a sole is hard to see in a reference pose, but follows from the heights of heel and ball on the ground.
-/// Tilts over 0.2 rad come from standing on the toes and are ignored.
+/// The tilt of a sole is uncertain in a reference pose, but follows from the heights of heel and ball while the foot
+/// stands. Frames with tilts over 0.2 rad are ignored, because the foot then stands on its toes.
 pub fn flatten_soles(feet: &[Foot; 2], points: &[[[Vec3; 2]; 2]]) -> ([f32; 2], [Foot; 2]) {
     let (mut tilts, mut flat) = ([0.0; 2], *feet);
     for k in 0..2 {
@@ -140,7 +140,7 @@ pub struct ContactSettings {
     pub height: f32,
     /// Speed over the ground from which a body runs, m/s.
     pub run: f32,
-    /// Shortest time on the ground, and shortest time off the ground, seconds; shorter ones are noise.
+    /// Shortest time on the ground, and shortest time off the ground, seconds; shorter times count as noise.
     pub shortest: f32,
 }
 

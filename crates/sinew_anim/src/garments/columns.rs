@@ -6,7 +6,7 @@ use crate::tuning::{HEM_SHARE, RING_GAP};
 use sinew_math::{Affine, Vec3, max};
 
 impl GarmentColumn {
-    /// Makes a column of a joint and its descendants along the longest branch, without joints of
+    /// Returns the column of a joint and its descendants along the longest branch, without joints of
     /// [sheets](Rig::sheets). If the skin of the last joint extends beyond that joint, the hem is at the end of that
     /// skin.
     ///

@@ -11,8 +11,8 @@ const KINDS: [(&str, &[&str]); 3] = [
     ("coat", &["coat", "jacket", "コート"]),
 ];
 
-/// Returns garments by joint names: capes, skirts and coats with at least two chains side by side. One chain alone is
-/// no cloth; it may swing as a spring ([`guess_springs`](crate::guess_springs)).
+/// Returns garments by joint names: capes, skirts and coats with at least two chains side by side. A single chain does
+/// not count as cloth; it may swing as a spring ([`guess_springs`](crate::guess_springs)).
 pub fn guess_garments(rig: &Rig) -> Vec<Garment> {
     let kind_of: Vec<Option<usize>> = rig.joints.iter().map(|joint| kind(&joint.name)).collect();
     let garment = |(kind, (name, _)): (usize, &(&str, &[&str]))| {

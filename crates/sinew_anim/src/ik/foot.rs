@@ -138,7 +138,7 @@ fn highest_pelvis(model: &[Affine], leg: &TwoBone, target: Vec3, up: Vec3) -> f3
     let down = way.dot(up);
     let aside = (way - up * down).length();
     let full = 0.999 * long;
-    // A target out of reach sideways is out of reach at every height.
+    // A target whose horizontal distance exceeds the leg's reach is out of reach at every height.
     if aside >= full { f32::INFINITY } else { down + (full * full - aside * aside).sqrt() }
 }
 

@@ -32,7 +32,7 @@ fn update_from(rig: &Rig, joint: JointIdx, parent: &Affine, local: &[LocalTransf
     }
 }
 
-/// Sets a joint's rotation to `wanted` in model space; its descendants move along.
+/// Sets a joint's rotation to `wanted` in model space; its descendants move with it.
 pub(crate) fn set_rotation(
     rig: &Rig,
     joint: JointIdx,
@@ -45,13 +45,13 @@ pub(crate) fn set_rotation(
     update_from(rig, joint, &parent, local, model);
 }
 
-/// Rotates a joint about its origin, in model axes; its descendants move along.
+/// Rotates a joint about its origin, in model axes; its descendants move with it.
 fn turn(rig: &Rig, joint: JointIdx, turn: Rotation, local: &mut [LocalTransform], model: &mut [Affine]) {
     let rotation = model[joint].to_rigid().rotation;
     set_rotation(rig, joint, turn * rotation, local, model);
 }
 
-/// Moves a joint, in model axes; its descendants move along.
+/// Moves a joint, in model axes; its descendants move with it.
 pub(crate) fn shift(
     rig: &Rig,
     joint: JointIdx,

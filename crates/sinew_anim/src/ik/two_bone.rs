@@ -108,7 +108,7 @@ pub fn solve_two_bone(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -
     }
 }
 
-/// Aims a limb whose first or second bone has no length: such a limb has only a direction.
+/// Aims a limb whose first or second bone has no length at the target; such a limb cannot bend.
 fn aim_one_bone(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -> TwoBoneSolution {
     let way = goal.target - root;
     if !way.is_finite() {
@@ -121,8 +121,9 @@ fn aim_one_bone(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -> TwoB
     TwoBoneSolution { upper, lower, stretch: 1.0, miss }
 }
 
-/// Distance that a limb of length `full` reaches for a target at distance `far`: equal to it until `softness` of the
-/// length is left, then approaching `full`. Continuous in its first derivative.
+/// Returns the distance of the limb's end from its start for a target at distance `far`, for a limb of length `full`.
+/// It equals `far` until only the share `softness` of the length is left, and then approaches `full`. Its first
+/// derivative is continuous.
 fn soft_reach(far: f32, full: f32, softness: f32) -> f32 {
     let slow = clamp(softness, 0.0, 0.5) * full;
     let hard = full - slow;

@@ -6,7 +6,7 @@ const MOST_LAPS: u64 = 1 << 53;
 /// Continuation after the end of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LoopMode {
-    /// The clip continues at the start; its end and start are one time.
+    /// The clip continues at the start; its end and its start count as the same time.
     #[default]
     Loop,
     /// The clip plays backward, then forward again.
@@ -210,8 +210,8 @@ impl Recurring {
 }
 
 impl Passage {
-    /// Returns each crossing of the clip time `time`, 0 to the clip's length, in order. The first step after a start or a
-    /// seek also crosses a time equal to its start.
+    /// Returns each crossing of the clip time `time`, 0 to the clip's length, in order. The first step after a start or
+    /// a seek also crosses a time equal to its start.
     pub fn crossings(self, time: f32) -> impl Iterator<Item = Crossing> {
         self.recurring(f64::from(time)).into_iter().flatten().flat_map(move |moment| self.of(moment))
     }

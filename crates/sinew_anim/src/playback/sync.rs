@@ -21,7 +21,7 @@ impl Default for Markers {
 pub struct Phase {
     /// Number of the last marker, counted through all laps.
     pub marker: i64,
-    /// Share of the way to the next marker, 0 to 1, 1 excluded.
+    /// Share of the time to the next marker that has passed, 0 to 1, 1 excluded.
     pub share: f64,
 }
 

@@ -154,9 +154,9 @@ impl Blender {
     /// Writes the weighted mean of any number of poses to `out`, joint by joint. `out`, `rest`, all layers and masks
     /// have one entry per joint.
     ///
-    /// The result does not depend on the order of the layers, to the bit: they are added by weight, then by content.
-    /// The result is the heaviest pose plus weighted differences, so that a pose blended with itself is unchanged, to
-    /// the bit. If the weights sum to zero, or rotations cancel, the result is the rest pose, to the bit.
+    /// The result has the same bits for any order of the layers: they are added in the order of weight, then of
+    /// content. It is the heaviest pose plus weighted differences, so that a pose blended with itself keeps its bits.
+    /// If the weights sum to zero, or rotations cancel, the result has the bits of the rest pose.
     ///
     /// Allocates only for more layers than before.
     ///
@@ -180,9 +180,9 @@ impl Blender {
     /// [`Clip::difference_from`](crate::Clip::difference_from). A rotation becomes `pose · difference` (in the joint's
     /// own axes), a translation the sum, a scale the product.
     ///
-    /// Several differences at a joint are first summed in the order of [`blend`](Self::blend), so their order does not
-    /// matter, to the bit, and the result does not jump where two weights become equal. For rotations the sum is
-    /// `1 + Σ w (difference − 1)`, normalised.
+    /// Several differences at a joint are first summed in the order of [`blend`](Self::blend). So the bits do not
+    /// depend on the order of the layers, and the result does not jump where two weights become equal. For rotations
+    /// the sum is `1 + Σ w (difference − 1)`, normalised.
     ///
     /// # Panics
     /// If lengths differ.

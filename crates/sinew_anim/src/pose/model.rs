@@ -81,7 +81,7 @@ impl ModelPose {
         self.joints.len().saturating_sub(1)
     }
 
-    /// True if it has no joints.
+    /// True if the pose has no joints.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

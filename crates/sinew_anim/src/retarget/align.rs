@@ -118,8 +118,8 @@ fn trunk_turn(from: &Stance<'_>, to: &Stance<'_>) -> Rotation {
     Rotation::from_mat3_lossy(&(frame(new_left, new_up) * frame(left, up).transpose()))
 }
 
-/// Returns the rotations that align the two bones of a limb with those of the other body, each after the previous one;
-/// the third joint follows.
+/// Returns the rotations that align the two bones of a limb with those of the other body. Each rotation applies after
+/// the previous one; the third joint gets the rotation of the second bone.
 fn chain_turns(
     from: &Stance<'_>,
     to: &Stance<'_>,

@@ -229,7 +229,7 @@ struct Transfer<'a> {
     actor_feet: [Foot; 2],
     /// Legs of the character.
     legs: Legs,
-    /// True if they have no knees.
+    /// True if the character's legs have no knees.
     is_stiff: bool,
     /// Vector from the pelvis to the middle of its hip joints, in the pelvis' axes without scale, metres.
     hips_to_legs: Vec3,
@@ -373,7 +373,8 @@ impl<'a> Transfer<'a> {
         }
     }
 
-    /// Rotation of the actor's thigh to the direction from hip to ankle, if the role is the thigh of a leg of one bone.
+    /// Rotation that turns the actor's thigh to the direction from hip to ankle, if the role is the thigh of a leg
+    /// without a knee.
     fn straight_leg(&self, role: Role, from: &[Affine]) -> Rotation {
         let leg = match role {
             Role::UpperLeg(side) if self.is_stiff => self.actor_feet[usize::from(side == Side::Right)].leg,

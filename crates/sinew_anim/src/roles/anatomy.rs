@@ -331,7 +331,7 @@ impl<'a> Scene<'a> {
             notes.push("the feet hardly show the front of the body: it is taken from the elbows".into());
             return lateral * bent;
         }
-        // A lead of at least half a per cent of the height shows feet; a smaller one is noise.
+        // If the feet extend by at least half a per cent of the height, they show the front; less is noise.
         if lead.abs() > LEAST_FOOT {
             return lateral * lead.signum();
         }
@@ -644,7 +644,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Trust in the names of a rig, by comparing mirrored pairs.
+/// How far the names of a rig are trusted, by comparing the names of mirrored pairs.
 enum Trust {
     /// The names are mirrored.
     All,

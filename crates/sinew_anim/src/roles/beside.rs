@@ -7,8 +7,8 @@ use crate::rig::{JointIdx, Rig};
 use crate::roles::tuning::{AT_MAIN, SIDE_BONES};
 use sinew_math::{Affine, Vec3, max, max3, min3};
 
-/// Moves the bind poses of side skeletons (hair, a cape, eyes) with the nearest bone of the main skeleton. They were
-/// placed at the rest pose, and are misplaced if the body was bound in another pose.
+/// Moves the bind poses of side skeletons (hair, a cape, eyes) with the nearest bone of the main skeleton. Side
+/// skeletons are placed relative to the rest pose, so they would be misplaced if the body was bound in another pose.
 pub(super) fn move_side_skeletons(rig: &Rig, rest: &[Affine], bound: &mut [Option<Affine>]) {
     let all = skeletons(rig);
     if all.len() < 2 {

@@ -172,7 +172,7 @@ impl Bound {
         let has_bones = bound.area.iter().any(|&a| a > 0.0);
         let is_named_end = |&i: &usize| is_end[i] && place[i] == i && !rig.joints[i].name.is_empty();
         for i in (0..rig.joints.len()).filter(is_named_end).filter(|&i| !is_beside[i]) {
-            // Length of a hand or a head, which the file does not give.
+            // Assumed length of a hand or a head, because the file does not give the length of its bone.
             bound.area[i] = 0.06 * bound.size();
         }
         has_bones.then_some(bound)
@@ -372,7 +372,7 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
         let joint = skin.joints[slot];
         (carried[joint], core::cmp::Reverse(ancestors(rig, joint).count()))
     };
-    // A handle above the body may be bound in another scale, so it is ignored.
+    // A control joint above the body may be bound in another scale, so it is ignored.
     let size = |place: &Affine| place.linear.x_axis.length();
     let mut sizes: Vec<f32> = said.iter().map(size).collect();
     sizes.sort_by(f32::total_cmp);

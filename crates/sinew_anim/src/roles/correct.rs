@@ -69,7 +69,7 @@ pub(super) fn needed() -> impl Iterator<Item = Role> {
 }
 
 impl Correction {
-    /// True if there is nothing to correct.
+    /// True if the correction changes nothing.
     pub fn is_empty(&self) -> bool {
         self.roles.is_empty() && self.ignored.is_empty()
     }

@@ -225,7 +225,7 @@ impl Graph {
     fn place_for(&self, stray: usize, trunk: &[usize], ends: &[(usize, Vec3)], bound: &Bound) -> usize {
         let (size, start) = (bound.size(), self.nodes[stray].position);
         let area = |tree: usize| self.subtree(tree).iter().map(|&node| self.nodes[node].area).sum::<f32>();
-        // A hand that hangs beside the hips carries no leg.
+        // A hand beside the hips must not become the parent of a leg.
         let own = area(stray);
         let carries = |node: &usize| {
             !self.nodes[*node].children.is_empty() || own < LARGEST_FOOT * self.nodes[*node].area

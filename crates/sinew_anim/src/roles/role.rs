@@ -178,7 +178,7 @@ impl Role {
         }
     }
 
-    /// Returns the roles that may be the parent of this one by anatomy, nearest first.
+    /// Returns the roles that may be the anatomical parent of this role, nearest first.
     pub(crate) fn anatomical_parents(self) -> &'static [Role] {
         use Role::{Chest, Hips, Neck, Spine, UpperChest};
         const TRUNK: &[Role] = &[UpperChest, Chest, Spine, Hips];

@@ -7,29 +7,31 @@
 
 /// Share of all skin above which a joint named as a control counts as a bone, 0 to 1.
 ///
-/// Less than a body needs, because a hoof too small for a body must still follow its leg. Larger: hoofs do not follow
-/// their legs. Smaller: stray weights turn controls into bones. Shown by the tests of `wild`.
+/// It is below [`LEAST_BODY_SKIN`], because a hoof too small for its own body must still follow its leg. Larger: hoofs
+/// do not follow their legs. Smaller: stray weights turn controls into bones. Shown by the tests of `wild`.
 pub(crate) const CONTROL_SKIN: f32 = 5e-4;
 
-/// Least lead of both feet together, in body heights, that decides forward against the names of left and right.
+/// Least distance by which the feet extend in front of their ankles, summed over both feet, in body heights, at which
+/// they decide the forward direction against the names of left and right.
 ///
-/// Half of a human's lead. Larger: swapped names reverse characters. Smaller: slightly leading toes reverse them.
-/// Shown by the tests of `hints`.
+/// It is half of a human's distance. Larger: swapped names reverse characters. Smaller: feet that extend slightly
+/// backward reverse characters. Shown by the tests of `hints`.
 pub(crate) const FEET_AGAINST_NAMES: f32 = 0.04;
 
-/// Least lead of both feet together, in body heights, that decides forward if there is no other evidence.
+/// Least such distance, in body heights, at which the feet decide the forward direction if there is no other evidence.
 ///
 /// Larger: small feet are ignored. Smaller: noise decides the forward direction. Shown by the tests of `hints`.
 pub(crate) const LEAST_FOOT: f32 = 0.005;
 
-/// Fall of a limb from its first joint to its last, as a share of the distance, above which the limb counts as hanging.
-/// A trunk that rises by less counts as horizontal.
+/// Drop of a limb from its first joint to its last, as a share of their distance, above which the limb counts as
+/// hanging. A trunk that rises by a smaller share counts as horizontal.
 ///
 /// Larger: quadrupeds with human names count as humans. Smaller: a bent human counts as a quadruped. Shown by the tests
 /// of `assembly`.
 pub(crate) const HANGING: f32 = 0.6;
 
-/// Least distance of both elbows together behind the arms, in body heights, to outweigh unclear feet.
+/// Least sum of the distances of both elbows behind the straight lines of the arms, in body heights, at which the
+/// elbows decide against unclear feet.
 ///
 /// Larger: T-poses without feet have no front. Smaller: noise of straight arms decides the forward direction. Shown by
 /// the tests of `hints`.
@@ -42,13 +44,14 @@ pub(crate) const STEP_CORRELATION: f32 = 0.25;
 
 // roles/assembly.rs
 
-/// Least number of limb pairs with consistent left and right names to trust them without a mirror.
+/// Least number of limb pairs with consistent left and right names at which the names are trusted without a mirror
+/// plane.
 ///
 /// Larger: low-poly characters with few bones are rejected. Smaller: two names may agree by chance. Shown by the tests
 /// of `assembly`.
 pub(crate) const LEAST_NAMED_PAIRS: usize = 3;
 
-/// Least cosine between a pair's right-to-left direction and the mean of all pairs.
+/// Least cosine between a pair's right-to-left direction and the mean of all pairs at which the names are consistent.
 ///
 /// Larger: legs in a stride are rejected. Smaller: shuffled names are accepted. Shown by the tests of `assembly`.
 pub(crate) const NAMED_ALIKE: f32 = 0.3;
@@ -90,7 +93,7 @@ pub(crate) const SIDE_BONES: usize = 2;
 
 // roles/characters.rs
 
-/// Least share of a skeleton's box inside another's, along each axis, to belong to it.
+/// Least share of a skeleton's bounds inside another's, along each axis, at which it belongs to the other skeleton.
 ///
 /// Larger: protruding clothes count as characters. Smaller: characters that stand close together are merged. Shown by
 /// the tests of `assembly`.
@@ -101,12 +104,12 @@ pub(crate) const LIES_WITHIN: f32 = 0.5;
 /// Larger: a dog belongs to its owner. Smaller: a hat counts as a character. Shown by the tests of `assembly`.
 pub(crate) const SMALL_BESIDE: f32 = 0.25;
 
-/// Least size of a skeleton within another's box that may be its own character, as a share of the other's size.
+/// Least size of a skeleton within another's bounds that may be a separate character, as a share of the other's size.
 ///
 /// Larger: surrounded characters are merged. Smaller: a wig counts as a character. Shown by the tests of `assembly`.
 pub(crate) const LARGE_WITHIN: f32 = 0.4;
 
-/// Fewest bones of a character within another's box.
+/// Least number of bones of a separate character within another's bounds.
 ///
 /// Larger: a bird on a shoulder is merged. Smaller: a coat with its own bones counts as a character. Shown by the tests
 /// of `assembly`.
@@ -133,7 +136,8 @@ pub(crate) const SHORTEST_WALK: f32 = 0.2;
 
 /// Least ratio of the variance of alternating swing to that of common swing.
 ///
-/// Larger: a swaying walk shows no legs. Smaller: hops show legs. Shown by the tests of `hints`.
+/// Larger: the legs of a swaying walk are not recognised. Smaller: limbs of a hop count as legs. Shown by the tests of
+/// `hints`.
 pub(crate) const IN_TURNS: f32 = 4.0;
 
 /// Largest ratio of the variances of two limbs that swing as a pair.
@@ -161,24 +165,26 @@ pub(crate) const FOOT_AT_END: f32 = 0.01;
 
 /// Largest ratio of the skin of a foot beside the body to that of the shank before it.
 ///
-/// Larger: legs beside the body hang on hands. Smaller: large boots have no leg. Shown by the tests of `assembly`.
+/// Larger: legs are attached to hands as feet. Smaller: large boots are not attached to a leg. Shown by the tests of
+/// `assembly`.
 pub(crate) const LARGEST_FOOT: f32 = 2.0;
 
 /// Largest difference of the distances of twins from the root, as a share of the skin's size.
 ///
-/// Larger: any two trees are twins. Smaller: slightly asymmetric rigs have no twins. Shown by the tests of `creatures`.
+/// Larger: any two subtrees count as twins. Smaller: slightly asymmetric rigs have no twins. Shown by the tests of
+/// `creatures`.
 pub(crate) const TWIN_PLACE: f32 = 0.025;
 
 /// Least area of skin that a twin moves, as a share of the other's.
 ///
-/// Larger: legs of uneven meshes are no twins. Smaller: a leg and a finger are twins. Shown by the tests of
-/// `creatures`.
+/// Larger: legs of uneven meshes do not count as twins. Smaller: a leg and a finger count as twins. Shown by the tests
+/// of `creatures`.
 pub(crate) const TWIN_AREA: f32 = 0.6;
 
 // roles/humanoid.rs
 
-/// Least distance along a forearm of the nearer of two joints, as a share of the other's distance, for both to be
-/// fingers.
+/// Distance of another joint from the start of a forearm, as a share of the hand joint's distance, above which both
+/// joints count as fingers.
 ///
 /// Larger: a thumb that begins early is missed. Smaller: a twist bone counts as a finger. Shown by the tests of
 /// `roles`.
@@ -202,7 +208,8 @@ pub(crate) const AT_SHOULDER: f32 = 0.03;
 
 /// Largest difference of the heights of two joints that count as equally high, as a share of the body's height.
 ///
-/// Larger: knees count as high as ankles. Smaller: rounding decides. Shown by the tests of `roles`.
+/// Larger: knees and ankles count as equally high. Smaller: rounding decides which joint is higher. Shown by the tests
+/// of `roles`.
 pub(crate) const AS_HIGH: f32 = 0.02;
 
 /// Least height of the hips of a character with a large head, as a share of the character's height.
@@ -223,17 +230,18 @@ pub(crate) const SHORT_BONE: f32 = 0.35;
 
 /// Least share of a hip bone's length that points away from the midline.
 ///
-/// Larger: slanted hip bones count as thighs. Smaller: short, spread thighs count as hips. Shown by the tests of `lost`.
+/// Larger: slanted hip bones count as thighs. Smaller: short, spread thighs count as hips. Shown by the tests of
+/// `lost`.
 pub(crate) const SIDEWAYS: f32 = 0.8;
 
 // roles/keep.rs
 
-/// Least share of all skin for a body of a creature, 0 to 1.
+/// Least share of all skin that a joint of a creature must move to get a body, 0 to 1.
 ///
 /// Larger: ends of tails and legs become stiff. Smaller: ears and claws get bodies. Shown by the tests of `creatures`.
 pub(crate) const LEAST_BODY_SKIN: f32 = 0.004;
 
-/// Least share of all skin for a separate part of the spine, 0 to 1.
+/// Least share of all skin that a part of the spine must move to get a separate body, 0 to 1.
 ///
 /// Larger: snakes become stiff. Smaller: short vertebrae make weak joints. Shown by the tests of `creatures`.
 pub(crate) const LEAST_SPINE_SKIN: f32 = 0.02;
@@ -245,10 +253,10 @@ pub(crate) const LEAST_SPINE_SKIN: f32 = 0.02;
 /// `RiggedFigure` (1) and of `Witch` (0.5).
 pub(crate) const ON_BARE_ARM: f32 = 0.7;
 
-/// Shortest clavicle that gets a body, as a share of the height.
+/// Length of the shortest clavicle that gets a body, as a share of the body's height.
 ///
-/// Larger: shoulders are rigid. Smaller: clavicles get bodies that nothing collides with. Shown by the tests of
-/// `roles`.
+/// Larger: shoulders are rigid. Smaller: clavicles get bodies so small that nothing collides with them. Shown by the
+/// tests of `roles`.
 pub(crate) const LEAST_CLAVICLE: f32 = 0.05;
 
 /// Distance around the skin's box within which a mesh without a bone counts as worn, as a share of the skin's size.
@@ -274,7 +282,7 @@ pub(crate) const VOTERS: usize = 48;
 
 // roles/props.rs
 
-/// Least longest side of a prop with its own body, as a share of the skin's longest side.
+/// Least length of the longest side of a prop that gets its own body, as a share of the skin's longest side.
 ///
 /// Larger: swords sink into the floor. Smaller: buttons get bodies. Shown by the tests of `rig_variants` of the
 /// ragdolls.
@@ -306,16 +314,16 @@ pub(crate) const MIRROR_TOLERANCE: f32 = 0.025;
 
 // roles/units.rs
 
-/// Weight of the unit in which the exporting program usually writes, on the scale of a unit's rarity.
+/// Weight of the unit in which the exporting program usually writes, on the same scale as the rarity of a unit.
 ///
-/// Larger: giants of a program that writes metres are accepted. Smaller: the program is ignored. Shown by the tests of
-/// `hints`.
+/// Larger: a giant is accepted if its exporting program writes metres. Smaller: the exporting program is ignored. Shown
+/// by the tests of `hints`.
 pub(crate) const UNIT_BY_EXPORTER: f32 = 1.0;
 
 /// Weight of a unit that all neighbouring files have, on the scale of [`UNIT_BY_EXPORTER`].
 ///
-/// Larger: a wrong file of a kit follows the others. Smaller: files of one kit get different sizes. Shown by the tests
-/// of `hints`.
+/// Larger: a file with another unit gets the unit of its neighbours. Smaller: files of one kit get different sizes.
+/// Shown by the tests of `hints`.
 pub(crate) const UNIT_BY_KIN: f32 = 2.0;
 
 /// Height of a human as a share of the free height under a door, 0 to 1.

@@ -84,7 +84,7 @@ struct Sizes {
     /// Names of the body and of its measure, for a sentence.
     words: [&'static str; 2],
     fits: core::ops::Range<f32>,
-    /// Sizes in metres that prove that the unit is one centimetre.
+    /// Range of sizes, metres. If a centimetre as the file's unit gives a size in this range, it is accepted.
     surely: core::ops::Range<f32>,
     /// Usual size, metres.
     usual: f32,

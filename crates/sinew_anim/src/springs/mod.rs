@@ -94,9 +94,9 @@ pub struct SpringBone {
     pub joint: JointIdx,
     /// Tip of the bone in the joint's own space, file units. Zero: the bone does not swing.
     pub tail: Vec3,
-    /// Speed of the tip toward the rest pose by the spring, file units per second, ≥ 0.
+    /// Speed at which the spring moves the tip toward the rest pose, file units per second, ≥ 0.
     pub stiffness: f32,
-    /// Velocity of the tip by gravity, file units per second, the file's axes.
+    /// Velocity that gravity gives the tip, file units per second, in the file's axes.
     pub gravity: Vec3,
     /// Share of the tip's motion lost in 1/60 s, 0..=1.
     pub drag: f32,
@@ -146,7 +146,8 @@ pub enum LimitKind {
         /// Angle, 0..=π.
         angle: f32,
     },
-    /// Spherical: the direction is within a rotation about X, and an elevation out of the plane perpendicular to X.
+    /// Spherical: the rotation of the direction about X and its elevation out of the plane perpendicular to X are
+    /// limited separately.
     Spherical {
         /// Largest rotation about X, 0..=π.
         phi: f32,

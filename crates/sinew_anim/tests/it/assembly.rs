@@ -45,7 +45,7 @@ fn give_skin(rig: &mut Rig, from: usize, to: usize) {
 
 /// Checks that every present part of the toy body has its role, and a body attached to its anatomical parent.
 fn is_whole(rig: &Rig, missing: &[&str]) -> RigAnalysis {
-    let found = analyze(rig).expect("a skin");
+    let found = analyze(rig).expect("the rig has a skin");
     assert!(found.humanoid, "{:?}", found.notes);
     for (name, parent, _) in toy::BODY.iter().filter(|(name, ..)| !missing.contains(name)) {
         let role = Role::from_name(name).expect("a VRM name");
@@ -141,7 +141,7 @@ fn human_with_one_bone_limbs_is_recognised() {
     }
     rig.joints[part("leftUpperLeg")].name = "mixamorig:LeftLeg".into();
     rig.joints[part("rightUpperLeg")].name = "mixamorig:RightLeg".into();
-    let found = analyze(&rig).expect("a skin");
+    let found = analyze(&rig).expect("the rig has a skin");
     assert!(found.humanoid, "{:?}", found.notes);
     assert_eq!(found.joint_with(Role::UpperLeg(Side::Left)), Some(part("leftUpperLeg")));
     assert_eq!(found.joint_with(Role::Head), Some(part("head")));
@@ -246,7 +246,7 @@ fn separate_hair_joins_the_head_of_a_bent_rest_pose() {
 }
 
 #[test]
-fn second_figure_is_not_merged() {
+fn second_character_is_not_merged_into_the_first() {
     let mut rig = toy::body(mixamo);
     let other = add_skeleton(&mut rig, "Bone", Vec3::new(2.0, 0.0, 0.0), 1.2);
     assert_eq!(characters(&rig), vec![vec![0], vec![1]]);
@@ -339,7 +339,7 @@ fn clavicles_on_the_midline_belong_to_the_arms() {
         primitive.weights.extend([[1.0, 0.0, 0.0, 0.0]; 3]);
         primitive.indices.extend([first, first + 1, first + 2]);
     }
-    let found = analyze(&rig).expect("a skin");
+    let found = analyze(&rig).expect("the rig has a skin");
     assert!(found.humanoid, "{:?}", found.notes);
     assert!(found.joint_with(Role::Hand(Side::Left)).is_some());
 }
@@ -352,8 +352,8 @@ fn figure_with_wings_is_not_human() {
         Role::Hand(_) => "WING_TIP".into(),
         _ => "part".into(),
     });
-    assert!(!analyze(&rig).expect("a skin").humanoid);
-    assert!(analyze(&toy::body(|_| "part".into())).expect("a skin").humanoid);
+    assert!(!analyze(&rig).expect("the rig has a skin").humanoid);
+    assert!(analyze(&toy::body(|_| "part".into())).expect("the rig has a skin").humanoid);
 }
 
 #[test]
@@ -391,7 +391,7 @@ fn nameless_human_with_unequally_bent_arms_is_recognised() {
     for (number, joint) in rig.joints.iter_mut().enumerate() {
         joint.name = format!("Bone.{number:03}");
     }
-    assert!(analyze(&rig).expect("a skin").humanoid);
+    assert!(analyze(&rig).expect("the rig has a skin").humanoid);
     for (role, turn) in [
         ("leftUpperArm", Rotation::from_axis_angle(Vec3::Y, -0.3)),
         ("leftLowerArm", Rotation::from_axis_angle(Vec3::Y, -0.7)),
@@ -399,7 +399,7 @@ fn nameless_human_with_unequally_bent_arms_is_recognised() {
     ] {
         bend(&mut rig, part(role), turn);
     }
-    let found = analyze(&rig).expect("a skin");
+    let found = analyze(&rig).expect("the rig has a skin");
     assert!(found.humanoid, "{:?}", found.notes);
     for role in [Role::LowerArm(Side::Left), Role::Hand(Side::Left), Role::Hand(Side::Right)] {
         let joint = found.joint_with(role).unwrap_or_else(|| panic!("no {role:?}"));
@@ -443,7 +443,7 @@ fn human_with_inner_limb_joints_and_no_hands_or_feet_is_recognised() {
     }
     // Moves the new joints in front of their descendants, because parents come before children.
     let rig = in_order(&rig);
-    let found = analyze(&rig).expect("a skin");
+    let found = analyze(&rig).expect("the rig has a skin");
     assert!(found.humanoid, "{:?}", found.notes);
     for (role, place) in [
         (Role::UpperLeg(Side::Left), [0.1, 0.9, 0.0]),
@@ -512,7 +512,7 @@ fn quadruped_with_human_names_is_not_human() {
         rig.joints[joint].rest.translation = place - parent;
     }
     let hints = Hints { up: Some(Vec3::Y), ..Hints::default() };
-    let found = analyze_hinted(&rig, &hints).expect("a skin");
+    let found = analyze_hinted(&rig, &hints).expect("the rig has a skin");
     assert!(!found.humanoid, "{:?}", found.notes);
     assert!((found.up_axis - Vec3::Y).length() < 1e-6);
 }
@@ -566,7 +566,7 @@ fn trunk_on_a_separate_branch_is_found() {
         rig.skins[0].inverse_bind[joint].translation -= by;
         rig.meshes[0].primitives[0].positions[4 * joint..4 * joint + 4].iter_mut().for_each(|at| *at += by);
     }
-    let found = analyze(&in_order(&rig)).expect("a skin");
+    let found = analyze(&in_order(&rig)).expect("the rig has a skin");
     assert!(found.humanoid, "{:?}", found.notes);
     for (name, ..) in toy::BODY {
         let role = Role::from_name(name).expect("a VRM name");
@@ -614,7 +614,7 @@ fn rigid_trunk_above_the_legs_is_the_hips() {
     // One arm is bent, so that only names can decide.
     bend(&mut rig, part("leftUpperArm"), Rotation::from_axis_angle(Vec3::Z, 0.9));
     let sorted = in_order(&rig);
-    let found = analyze(&sorted).expect("a skin");
+    let found = analyze(&sorted).expect("the rig has a skin");
     assert!(found.humanoid, "{:?}", found.notes);
     let hips = found.joint_with(Role::Hips).map(|joint| sorted.joints[joint].name.as_str());
     assert_eq!(hips, Some("Bone"));
@@ -623,7 +623,7 @@ fn rigid_trunk_above_the_legs_is_the_hips() {
 }
 
 #[test]
-fn head_parented_to_the_armature_joins_the_head() {
+fn head_mesh_parented_to_the_armature_moves_with_the_head() {
     let mut rig = toy::body(mixamo);
     let head = part("head");
     // The head is half a metre high, larger than any human's.
@@ -645,7 +645,7 @@ fn head_parented_to_the_armature_joins_the_head() {
     let at = |name: &str| {
         sorted.joints.iter().position(|joint| joint.name == name).expect("the rig has this joint")
     };
-    let found = analyze(&sorted).expect("a skin");
+    let found = analyze(&sorted).expect("the rig has a skin");
     // The hat protrudes enough to get its own body.
     let body = |name: &str| found.kept.iter().find(|bone| bone.joint == at(name));
     let carrier = body("Goblin_head").and_then(|head| found.kept[head.parent?].joint.into());
@@ -685,7 +685,7 @@ fn skinless_hand_on_the_forearm_is_preferred() {
     give_skin(&mut rig, hand, forearm);
     add_bare(&mut rig, "ORG-mixamorig:LeftHand", None, Vec3::from_array(toy::BODY[hand].2), Vec3::ZERO);
     let sorted = in_order(&rig);
-    let found = analyze(&sorted).expect("a skin");
+    let found = analyze(&sorted).expect("the rig has a skin");
     let joint = found.joint_with(Role::Hand(Side::Left)).expect("a hand");
     assert_eq!(sorted.joints[joint].name, "mixamorig:LeftHand");
 }
@@ -719,7 +719,7 @@ fn rootless_figure_with_squatting_rest_pose_stands_in_the_bind_pose() {
     for foot in ["leftFoot", "rightFoot", "head"] {
         turn(&mut rig, foot, Vec3::X, 0.05);
     }
-    let found = analyze(&in_order(&rig)).expect("a skin");
+    let found = analyze(&in_order(&rig)).expect("the rig has a skin");
     let place = |role: Role| found.bind_model[found.joint_with(role).expect("a joint")].translation;
     let up = (place(Role::Head) - place(Role::Hips)).normalize();
     assert!(up.y > 0.9, "the direction from hips to head is {up}; notes {:?}", found.notes);
@@ -758,7 +758,7 @@ fn head_object_on_the_armature_keeps_its_mesh_and_hair() {
     let at = |name: &str| {
         sorted.joints.iter().position(|joint| joint.name == name).expect("the rig has this joint")
     };
-    let found = analyze(&sorted).expect("a skin");
+    let found = analyze(&sorted).expect("the rig has a skin");
     let body = found.kept.iter().find(|bone| bone.joint == at("Goblin_head")).expect("the object has a body");
     let carrier = body.parent.map(|parent| found.kept[parent].joint);
     assert_eq!(carrier, Some(at(&rig.joints[head].name)), "{:?}", found.notes);
@@ -792,7 +792,7 @@ fn separate_hat_is_bound_on_the_head_of_a_bent_rest_pose() {
     let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
     let primitive = Primitive { positions, indices, ..Primitive::default() };
     rig.meshes.push(RigMesh { name: String::new(), joint: hat, skin: None, primitives: vec![primitive] });
-    let found = analyze(&rig).expect("a skin");
+    let found = analyze(&rig).expect("the rig has a skin");
     let bound = found.bind_model[hat].translation - found.bind_model[part("head")].translation;
     assert!(
         (bound - Vec3::Y * 0.2).length() < 1e-3,
@@ -817,7 +817,7 @@ fn separate_prop_follows_its_carrier() {
     let at = |name: &str| {
         sorted.joints.iter().position(|joint| joint.name == name).expect("the rig has this joint")
     };
-    let found = analyze(&sorted).expect("a skin");
+    let found = analyze(&sorted).expect("the rig has a skin");
     assert!(found.kept.iter().any(|bone| bone.joint == at("hat") && bone.is_prop), "{:?}", found.notes);
     let riders = Riders::of(&sorted, &found);
     let mut pose: Vec<LocalTransform> = sorted.joints.iter().map(|joint| joint.rest).collect();
@@ -845,7 +845,7 @@ fn hat_moved_by_a_clip_keeps_the_clips_place_on_the_head() {
     let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
     let primitive = Primitive { positions, indices, ..Primitive::default() };
     rig.meshes.push(RigMesh { name: String::new(), joint: hat, skin: None, primitives: vec![primitive] });
-    let found = analyze(&rig).expect("a skin");
+    let found = analyze(&rig).expect("the rig has a skin");
     let on_head = Channel {
         joint: hat,
         property: Property::Translation,
@@ -900,7 +900,7 @@ fn childless_pelvis_called_root_is_the_hips() {
         .for_each(|leg| hang(&mut rig, part(leg), floor, Vec3::ZERO));
     kick(&mut rig);
     let sorted = in_order(&rig);
-    let found = analyze(&sorted).expect("a skin");
+    let found = analyze(&sorted).expect("the rig has a skin");
     let joint = found.joint_with(Role::Hips).expect("hips");
     assert_eq!(sorted.joints[joint].name, "root.x", "{:?}", found.notes);
     let spine = found.joint_with(Role::Spine).expect("a spine");
@@ -927,7 +927,7 @@ fn gun_with_many_vertices_does_not_change_the_bind_pose() {
         gun.indices.extend([0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].map(|corner| 4 * piece + corner));
     }
     rig.meshes.push(RigMesh { name: "gun".into(), joint: 0, skin: Some(0), primitives: vec![gun] });
-    let found = analyze(&rig).expect("a skin");
+    let found = analyze(&rig).expect("the rig has a skin");
     assert!(found.humanoid, "{:?}", found.notes);
     for (joint, (name, _, at)) in toy::BODY.iter().enumerate() {
         let off = (found.bind_model[joint].translation - Vec3::from_array(*at)).length();
@@ -938,7 +938,7 @@ fn gun_with_many_vertices_does_not_change_the_bind_pose() {
 /// A character has one mesh per part, and a raised arm with one mesh of three bones: the trunk's mesh determines the
 /// bind pose.
 #[test]
-fn a_raised_arm_of_its_own_mesh_says_nothing_of_the_bind_pose() {
+fn separate_mesh_of_a_raised_arm_does_not_change_the_bind_pose() {
     let mut rig = toy::body(mixamo);
     rig.joints[part("rightUpperArm")].rest.rotation = Rotation::from_axis_angle(Vec3::Z, -1.2);
     let whole = rig.meshes.remove(0);
@@ -961,7 +961,7 @@ fn a_raised_arm_of_its_own_mesh_says_nothing_of_the_bind_pose() {
         primitive.weights = used.iter().map(|&at| all.weights[at]).collect();
         rig.meshes.push(RigMesh { primitives: vec![primitive], ..whole.clone() });
     }
-    let found = analyze(&rig).expect("a skin");
+    let found = analyze(&rig).expect("the rig has a skin");
     for (joint, (name, _, at)) in toy::BODY.iter().enumerate() {
         let off = (found.bind_model[joint].translation - Vec3::from_array(*at)).length();
         assert!(off < 1e-3, "{name}: the bind position is off by {off} m");

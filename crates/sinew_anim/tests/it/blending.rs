@@ -128,7 +128,7 @@ fn weight_ramp_leaves_the_rest_pose_continuously() {
 }
 
 #[test]
-fn the_exact_mean_minimises_the_squared_chords() {
+fn exact_mean_minimises_the_squared_chords() {
     let mut random = Random::new(6);
     let mut blender = Blender::new(BlendOptions { mean: RotationMean::Exact, ..BlendOptions::default() });
     let mut out = Pose::new(JOINTS);
@@ -151,7 +151,10 @@ fn the_exact_mean_minimises_the_squared_chords() {
             let found = out.get(joint).rotation;
             for _ in 0..20 {
                 let nearby = Rotation::from_scaled_axis(random.direction() * 0.03) * found;
-                assert!(cost(found) < cost(nearby) + 1e-6, "a neighbour is better");
+                assert!(
+                    cost(found) < cost(nearby) + 1e-6,
+                    "a nearby rotation has a lower cost than the mean"
+                );
             }
         }
     }

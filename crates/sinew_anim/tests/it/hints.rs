@@ -257,9 +257,9 @@ fn named_animal_gets_the_size_of_its_species() {
     }
 }
 
-/// Feet of drawn walks move back at changing speeds; such walks used to have no speed.
+/// In drawn walks the feet move back at changing speeds.
 #[test]
-fn walk_with_uneven_feet_has_a_speed() {
+fn walk_with_changing_foot_speed_has_a_walking_speed() {
     let rig = tall(1.75, 1.0);
     let found = analyze_hinted(&rig, &Hints::default()).expect("a skin");
     let clip = |sway: f32| {

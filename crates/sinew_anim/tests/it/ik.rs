@@ -91,7 +91,7 @@ fn limb_points_at_a_target_out_of_reach() {
     assert!((tip - far.target).length() < 1e-4);
 }
 
-/// The reach of a soft limb grows smoothly in position and speed, and stays below its full length.
+/// With softness, the limb's reach and its rate of change are continuous, and the reach stays below the full length.
 #[test]
 fn soft_limb_straightens_smoothly() {
     let (root, middle, end) = (Vec3::ZERO, Vec3::new(0.2, -0.5, 0.0), Vec3::new(0.0, -1.0, 0.0));

@@ -117,7 +117,7 @@ fn foot_on_a_leg_of_one_bone_gets_a_knee() {
 
 /// Short hip bones beside the midline carry legs of two bones.
 #[test]
-fn short_sideways_bones_are_no_thighs() {
+fn short_sideways_bones_are_not_thighs() {
     let mut rig = numbered();
     with_hip_bones(&mut rig, 0.03);
     has_legs_below_hip_bones(&rig);
@@ -125,7 +125,7 @@ fn short_sideways_bones_are_no_thighs() {
 
 /// Both hip bones are roots and start at one place.
 #[test]
-fn legs_that_start_in_one_place_are_twins() {
+fn legs_that_start_at_one_position_are_a_mirrored_pair() {
     let mut rig = numbered();
     with_hip_bones(&mut rig, 0.0);
     hang(&mut rig, "leftUpperLeg", None);
@@ -135,7 +135,7 @@ fn legs_that_start_in_one_place_are_twins() {
 
 /// One forearm has no skin; its mirror image has.
 #[test]
-fn bare_bone_counts_if_its_mirror_image_has_skin() {
+fn bone_without_skin_is_kept_if_its_mirror_image_has_skin() {
     let mut rig = numbered();
     let [upper, lower] = ["leftUpperArm", "leftLowerArm"].map(part);
     let slots = rig.meshes[0].primitives[0].joints.iter_mut();
@@ -158,7 +158,7 @@ const LONG: [&str; 8] = [
 
 /// The arms are children of the pelvis.
 #[test]
-fn trunk_goes_on_above_arms_on_the_pelvis() {
+fn trunk_continues_above_arms_parented_to_the_pelvis() {
     let mut rig = numbered();
     hang(&mut rig, "leftUpperArm", Some("hips"));
     hang(&mut rig, "rightUpperArm", Some("hips"));
@@ -210,7 +210,7 @@ fn arms_without_skin_keep_their_roles() {
 
 /// Legs of two bones are trees of their own; the hands hang beside them, nearer than the pelvis.
 #[test]
-fn hands_beside_the_hips_carry_no_legs() {
+fn legs_beside_hands_are_not_attached_to_the_hands() {
     let mut rig = numbered();
     for (side, x) in [("left", 1.0), ("right", -1.0)] {
         put(&mut rig, part(&format!("{side}LowerArm")), Vec3::new(0.2 * x, 1.2, 0.0), 1.0);
@@ -251,7 +251,7 @@ fn legs_of_one_bone_follow_the_line_from_hip_to_ankle() {
     let mut found = analyze(&rig).expect("a skin");
     assert!(found.humanoid && found.joint_with(Role::LowerLeg(Side::Left)).is_none(), "{:?}", found.notes);
     assert_eq!(add_ankles(&mut rig, &mut found), 2);
-    assert_eq!(add_ankles(&mut rig, &mut found), 0, "they are there");
+    assert_eq!(add_ankles(&mut rig, &mut found), 0, "the ankles must not be added twice");
     assert!(Legs::of(&rig, &found).expect("legs").are_stiff(&rig));
     assert!(!Legs::of(&actor, &seen).expect("legs").are_stiff(&actor));
     // The actor bends its left knee by 120°, with its thigh 60° forward: hip, ankle and knee are a triangle of equal

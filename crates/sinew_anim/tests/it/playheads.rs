@@ -61,7 +61,10 @@ fn count(passage: Passage, mode: LoopMode, length: i64, e: i64, from: i64, way: 
         let lap = at.div_euclid(length);
         assert!(crossing.lap() == lap || mode == LoopMode::Once);
         if mode != LoopMode::PingPong {
-            assert!(last.is_none_or(|last| (crossing.distance - last) * way as f64 > 0.0), "in order");
+            assert!(
+                last.is_none_or(|last| (crossing.distance - last) * way as f64 > 0.0),
+                "crossings must be in order"
+            );
         }
         last = Some(crossing.distance);
         number += 1;

@@ -27,7 +27,7 @@ pub(super) fn read_all(scene: &Scene, size: usize) -> Result<(Vec<Clip>, Vec<Str
         let baked = ufbx::bake_anim(scene, &stack.anim, options).map_err(|error| explain(&error, size))?;
         let mut channels = Vec::new();
         for node in &baked.nodes {
-            // The scene's own root is no joint.
+            // The scene's own root is not a joint.
             if let Some(joint) = scene.nodes.get(node.typed_id as usize).and_then(|node| index(node)) {
                 channels.extend(read_node(node, joint, &name)?);
             }

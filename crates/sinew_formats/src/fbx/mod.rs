@@ -26,7 +26,7 @@ use ufbx::{
     AllocatorOpts, GeometryTransformHandling, InheritModeHandling, LoadOpts, Node, Scene, SpaceConversion,
 };
 
-/// Deepest nesting of nodes: far beyond any skeleton.
+/// Largest depth of nested nodes, larger than in any skeleton.
 const DEEPEST: u32 = 512;
 
 /// Reads an FBX file: every node as a joint, meshes with their skins, one clip for each animation stack.

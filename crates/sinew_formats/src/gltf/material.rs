@@ -116,7 +116,7 @@ impl<'s, 'a> Materials<'s, 'a> {
     }
 }
 
-/// Reports an error, because this build has no picture decoders.
+/// Returns an error, because this build has no picture decoders.
 #[cfg(not(feature = "pictures"))]
 pub(crate) fn decode_picture(_: &[u8], _: usize) -> Result<TextureImage, String> {
     Err("the feature `pictures` of sinew_formats is off".into())

@@ -68,7 +68,7 @@ pub enum Container {
     Gltf,
 }
 
-/// Setting that decides if base colour pictures are decoded.
+/// Whether base colour pictures are decoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Textures {
     /// Pictures are not decoded: [`Rig::textures`] stays empty.

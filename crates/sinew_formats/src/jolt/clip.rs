@@ -4,7 +4,7 @@ use super::objects::Objects;
 use crate::error::{Error, Result, quoted};
 use sinew_anim::{Channel, Clip, Interpolation, Property, Rig};
 
-/// Reads an animation of a skeleton: keys of rotation and translation, joint by joint, by the joints' names.
+/// Reads an animation of a skeleton: keys of rotation and translation for each joint. Joints are matched by name.
 ///
 /// # Errors
 /// Returns an error that names the line: no text object file, no animation, a joint that the rig lacks or that has two

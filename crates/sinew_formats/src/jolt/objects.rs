@@ -322,7 +322,7 @@ impl Values<'_, '_> {
             let before = self.lines.line;
             list.push(self.value(inner, level + STEP, depth)?);
             if self.lines.line == before {
-                // Without this check, a few bytes could request any amount of memory.
+                // Without this check, a file of a few bytes could make the reader allocate any amount of memory.
                 return Err(Error::malformed("elements of an array without a line", place(number)));
             }
         }

@@ -11,8 +11,7 @@ use sinew_math::{Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{BodyDef, BodyKind, MassProperties, Shape};
 use std::collections::BTreeMap;
 
-/// Most bodies of a model: those of the largest joint tree. The number of pairs grows with the square of this
-/// number.
+/// Largest number of bodies of a model, that of the largest joint tree. The number of pairs grows with its square.
 pub(crate) const MOST_BODIES: usize = 1024;
 
 /// A body of the file with its position in the tree.

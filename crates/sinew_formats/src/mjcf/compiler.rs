@@ -10,7 +10,7 @@ pub(super) struct Compiler {
     angle: Angle,
     /// Axes of Euler angles in the file's frame, intrinsic or extrinsic.
     euler: [(Vec3, Axes); 3],
-    /// Rule that decides if a joint or geom with a range is limited when the file does not state it.
+    /// Rule that decides whether a joint with a range is limited if the file does not say so.
     pub limits: Limits,
     pub inertia: InertiaFrom,
 }
@@ -29,7 +29,7 @@ enum Axes {
     Fixed,
 }
 
-/// Rule that decides if a joint with a range is limited when the file does not state it.
+/// Rule that decides whether a joint with a range is limited if the file does not say so.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Limits {
     ByRange,

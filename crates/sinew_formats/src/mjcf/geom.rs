@@ -156,7 +156,7 @@ fn read_restitution(solref: Value<'_>) -> Result<f32> {
         [first, second, ..] => (first, second),
     };
     let damping = if first > 0.0 { second } else { -second / (2.0 * (-first).sqrt()) };
-    // The comparison is false for NaN, which then counts as no bounce.
+    // The comparison is false for NaN, which then gives restitution 0.
     if !(0.0..1.0).contains(&damping) {
         return Ok(0.0);
     }

@@ -130,7 +130,8 @@ impl Writer<'_> {
         self.line(indent, "</body>");
     }
 
-    /// Returns the translation upward until no shape is in the floor: shapes may extend below the soles of the skin.
+    /// Returns the height by which the ragdoll is raised so that no shape is in the floor; shapes may extend below the
+    /// soles of the skin.
     fn lifted(&self) -> Transform {
         let lowest = |body: &RagdollBodyDef| body.shape.aabb(&body.character_from_body).min.y;
         Transform::from_translation(Vec3::Y * -self.def.bodies.iter().map(lowest).fold(0.0, min))

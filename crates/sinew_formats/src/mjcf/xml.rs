@@ -70,12 +70,12 @@ pub(crate) fn children<'a>(element: Element<'a>) -> impl DoubleEndedIterator<Ite
     element.children().filter(Element::is_element).map(|child| (child.tag_name().name(), child))
 }
 
-/// Makes an error: the element breaks the rules of its format.
+/// Creates an error: the element breaks the rules of its format.
 pub(crate) fn malformed(element: Element<'_>, what: impl Into<String>) -> Error {
     Error::malformed(what, place(element))
 }
 
-/// Makes an error: the element uses an unsupported feature.
+/// Creates an error: the element uses an unsupported feature.
 pub(crate) fn unsupported(element: Element<'_>, what: impl Into<String>) -> Error {
     Error::unsupported(what, place(element))
 }

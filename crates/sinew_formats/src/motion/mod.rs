@@ -99,7 +99,7 @@ pub fn read_motion(
     }
 }
 
-/// Makes a file that has only a rig.
+/// Returns the contents of a file that has only a rig.
 fn bare(format: MotionFormat, rig: Rig) -> MotionFile {
     MotionFile {
         format,

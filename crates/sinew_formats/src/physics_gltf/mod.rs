@@ -2,25 +2,24 @@
 //! `KHR_physics_rigid_bodies` with `KHR_implicit_shapes` (drafts of October 2025), and `OMI_physics_body`,
 //! `OMI_physics_shape` and `OMI_physics_joint`.
 //!
-//! The reader supports `motion` (mass, centre, inertia, velocities, gravity factor, static and kinematic bodies), sphere, box, capsule and
-//! cylinder colliders on a body's node or any node below it, friction and restitution of materials, and joints with limits in their six
-//! directions. Colliders without a body above them belong to the world. Cones in files written by [`write_khr`](crate::write_khr) are
-//! restored exactly, from `extras.sinew`.
+//! The reader supports `motion` (mass, centre, inertia, velocities, gravity factor, static and kinematic bodies),
+//! sphere, box, capsule and cylinder colliders on a body's node or any node below it, friction and restitution of
+//! materials, and joints with limits in their six directions. Colliders without a body above them belong to the world.
+//! Cones in files written by [`write_khr`](crate::write_khr) are restored exactly, from `extras.sinew`.
 //!
-//! Unsupported content is skipped and listed in [`MjcfModel::notes`]: mesh and hull colliders, triggers, filters, motors, soft limits,
-//! non-uniform scale. Lengths are in metres.
+//! Unsupported content is skipped and listed in [`MjcfModel::notes`]: mesh and hull colliders, triggers, filters,
+//! motors, soft limits, non-uniform scale. Lengths are in metres.
 //!
 //! ```
 //! use sinew_formats::read_physics_gltf;
 //! use sinew_physics::{World, WorldDef};
 //!
-//! let text = r#"{"asset": {"version": "2.0"}, "nodes": [{"name": "ball", "translation": [0, 3, 0], "extensions": {"OMI_physics_body":
-//!     {"motion": {"type": "dynamic", "mass": 2}, "collider": {"shape": 0}}}}],
-//!     "extensions": {"OMI_physics_shape": {"shapes": [{"type": "sphere", "sphere": {"radius": 0.5}}]}}}"#;
-//! let model = read_physics_gltf(text.as_bytes())?;
-//! let mut world = World::new(WorldDef::default());
-//! let ball = model.spawn(&mut world).bodies[model.body("ball").expect("the model has this body")];
-//! assert_eq!((world.mass(ball).mass, world.transform(ball).translation.y), (2.0, 3.0));
+//! let text = r#"{"asset": {"version": "2.0"}, "nodes": [{"name": "ball", "translation": [0, 3, 0], "extensions":
+//! {"OMI_physics_body": {"motion": {"type": "dynamic", "mass": 2}, "collider": {"shape": 0}}}}], "extensions":
+//! {"OMI_physics_shape": {"shapes": [{"type": "sphere", "sphere": {"radius": 0.5}}]}}}"#; let model =
+//! read_physics_gltf(text.as_bytes())?; let mut world = World::new(WorldDef::default()); let ball = model.spawn(&mut
+//! world).bodies[model.body("ball").expect("the model has this body")]; assert_eq!((world.mass(ball).mass,
+//! world.transform(ball).translation.y), (2.0, 3.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -427,7 +426,7 @@ fn kind_of(settings: At<'_>, notes: &mut Notes) -> Result<JointKind> {
         for (key, motions, most) in [("linearAxes", &mut linear, FARTHEST), ("angularAxes", &mut angular, PI)]
         {
             let axes = limit.list(key)?;
-            // Several axes share one distance limit, measured from the centre.
+            // Several axes may share one limit of the distance from the centre.
             let range = if axes.len() > 1 { Range { lo: -hi, hi } } else { Range { lo, hi } };
             let (lo, hi) = (max(range.lo, -most), min(range.hi, most));
             for axis in axes {

@@ -153,7 +153,7 @@ fn compressed_meshes_round_trip() {
 }
 
 #[test]
-fn complaints_about_a_stream_name_its_place() {
+fn errors_of_a_stream_name_its_place() {
     let good = stream(1);
     let path = "meshes[0].primitives[0].extensions.KHR_draco_mesh_compression";
     let case = |change: &dyn Fn(&mut Value), stream: &[u8]| {

@@ -93,7 +93,7 @@ fn written_files_read_back_equal() {
 }
 
 #[test]
-fn zeros_keep_their_sign() {
+fn written_zeros_keep_their_sign() {
     let mut def = read_ragdoll(example().as_bytes()).unwrap();
     let limit = SwingTwistLimit {
         swing_y: Range::new(-0.0, 0.0),

@@ -163,7 +163,7 @@ fn excessive_collider_groups_are_rejected() {
 }
 
 #[test]
-fn settings_name_the_source() {
+fn source_of_springs_follows_from_the_settings() {
     let read = |word: &str| {
         let json = format!(r#"{{"sinew":"ragdoll-settings","version":1,"springs":"{word}"}}"#);
         read_ragdoll_settings(json.as_bytes())

@@ -3,8 +3,8 @@
 use super::expect_half_extents;
 use sinew_math::{Vec3, max3, min3};
 
-/// Distance to which half-space bounds reach from the origin, metres: finite, so that sums and differences stay finite,
-/// and beyond any world.
+/// Distance from the origin to which the bounds of a half-space reach, metres. It is finite, so that sums and
+/// differences stay finite, and larger than any world.
 pub const HALF_SPACE_REACH: f32 = 1.0e9;
 
 /// Axis-aligned box, metres.
@@ -24,10 +24,10 @@ impl Aabb {
     /// # Panics
     /// If a number is not finite, or `min` is above `max` along an axis.
     pub fn new(min: Vec3, max: Vec3) -> Self {
-        assert!(min.is_finite() && max.is_finite(), "corners of a box are finite");
+        assert!(min.is_finite() && max.is_finite(), "the corners of a box must be finite");
         assert!(
             min.x <= max.x && min.y <= max.y && min.z <= max.z,
-            "the lowest corner of a box is below its highest"
+            "the corner `min` of a box must not exceed `max` along any axis"
         );
         Self { min, max }
     }
@@ -42,20 +42,20 @@ impl Aabb {
         Self::reaching(center, half_extents)
     }
 
-    /// Like [`around`](Self::around), without the check, for computed values: a number that is not finite must reach
-    /// the check of the bodies instead of causing a panic.
+    /// Like [`around`](Self::around), without the checks, for computed values: the world checks bodies for numbers that
+    /// are not finite, so this function must not panic because of them.
     #[inline]
     pub fn reaching(center: Vec3, half_extents: Vec3) -> Self {
         Self { min: center - half_extents, max: center + half_extents }
     }
 
-    /// True if the other box is inside this one.
+    /// True if the other box is inside this one; the boxes may be equal.
     #[inline]
     pub fn contains(&self, other: &Self) -> bool {
         self.merge(other) == *self
     }
 
-    /// Returns the smallest box that contains both.
+    /// Returns the smallest box that contains both boxes.
     #[must_use]
     #[inline]
     pub fn merge(&self, other: &Self) -> Self {

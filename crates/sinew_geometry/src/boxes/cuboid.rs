@@ -42,8 +42,8 @@ pub trait Cuboid {
         (distance <= 0.0).then_some(Penetration { depth: -distance, direction: normal })
     }
 
-    /// Returns the first point of the ray, from its origin to its end, that is in the box, with the normal. For a start
-    /// inside, the rules of [`Shape::cast_ray`] apply.
+    /// Returns the first point of the ray that is in the box, and the normal there; `None` if the ray misses the box or
+    /// a number is not finite. For a start inside the box, the rules of [`Shape::cast_ray`] apply.
     fn cast_ray(&self, ray: &Ray) -> Option<RayHit> {
         self.cast_half_line(ray).filter(|hit| hit.fraction <= 1.0)
     }
@@ -60,7 +60,7 @@ pub trait Cuboid {
         Some(RayHit { fraction, point: ray.at(fraction), normal: placed.vector(normal) })
     }
 
-    /// Returns the corners: bit k of the index is set on the positive side of axis k.
+    /// Returns the eight corners. Bit k of a corner's index is set if the corner is on the positive side of axis k.
     fn corners(&self) -> [Vec3; 8] {
         let placed = self.placed();
         core::array::from_fn(|index| placed.vertex(index))
@@ -84,7 +84,7 @@ pub trait Cuboid {
     /// # Panics
     /// If the mass is negative or not finite.
     fn inertia(&self, mass: f32) -> Sym3 {
-        assert!((0.0..f32::INFINITY).contains(&mass), "a mass is finite and not negative");
+        assert!((0.0..f32::INFINITY).contains(&mass), "a mass must be finite and not negative");
         let PlacedBox { axes: [x, y, z], half, .. } = self.placed();
         let d = box_inertia(half, mass);
         Sym3::outer(x) * d.x + Sym3::outer(y) * d.y + Sym3::outer(z) * d.z
@@ -95,7 +95,7 @@ pub trait Cuboid {
     /// # Panics
     /// If the density is negative or not finite.
     fn mass_properties(&self, density: f32) -> MassProperties {
-        assert!((0.0..f32::INFINITY).contains(&density), "a density is finite and not negative");
+        assert!((0.0..f32::INFINITY).contains(&density), "a density must be finite and not negative");
         let mass = density * self.volume();
         MassProperties { mass, center: self.placed().center, inertia: self.inertia(mass) }
     }

@@ -109,14 +109,16 @@ impl Penetration {
     }
 }
 
-/// Relative length below which a direction between two points counts as rounding.
+/// Distance of two points, relative to the size of the shapes, below which rounding dominates the direction between the
+/// points.
 const NOISE: f32 = 1e-4;
+
 /// Returns a capsule's core in the box's frame.
 fn core_in(placed: &PlacedBox, capsule: &Capsule) -> Segment {
     Segment { ends: capsule.ends.map(|p| placed.local_point(p)) }
 }
 
-/// Returns the signed distance along the direction in which the core is the least deep in the box, and that direction.
+/// Returns the direction in which the core leaves the box by the shortest way, and the signed distance along it.
 fn way_out_of_core(half: Vec3, core: &Segment) -> (f32, Vec3) {
     let (distance, face) = best_face(half, core);
     match best_edge(half, core, PARALLEL_SINE) {

@@ -1,10 +1,11 @@
-//! Overlap test of two boxes, for one pair or for eight: fifteen comparisons without a root or a division (Ericson,
-//! "Real-Time Collision Detection", 2005, §4.4.1).
+//! Overlap test of two boxes, for one pair or for eight at a time: fifteen comparisons without square roots or
+//! divisions (Ericson, "Real-Time Collision Detection", 2005, §4.4.1).
 
 use super::PlacedBox;
 use sinew_math::lanes::{Real, Vector3};
 
-/// Relative distance at which separated boxes still count as touching: several roundings.
+/// Largest gap, relative to the boxes' sizes and distance, at which separated boxes still count as touching; several
+/// times the rounding error of `f32`.
 const TOUCH: f32 = 5e-7;
 
 /// Two boxes in the frame of the first. They are apart if, along one of 15 directions, the offset of their centres
@@ -23,7 +24,7 @@ pub(super) struct FifteenAxes<R> {
     half_b: [R; 3],
     /// Centre of B along the axes of A.
     offset: [R; 3],
-    /// `cosine[i][j]` is axis `i` of A times axis `j` of B.
+    /// `cosine[i][j]` is the dot product of axis `i` of A and axis `j` of B.
     cosine: [[R; 3]; 3],
     /// Tolerance of each comparison, metres.
     slack: R,
@@ -65,7 +66,7 @@ impl<R: Real> FifteenAxes<R> {
         }
     }
 
-    /// True if no face axis has a gap.
+    /// True if the boxes have no gap along any face normal.
     #[inline(always)]
     pub fn faces(&self) -> R::Mask {
         self.face_of_a::<0>()
@@ -76,7 +77,7 @@ impl<R: Real> FifteenAxes<R> {
             & self.face_of_b::<2>()
     }
 
-    /// True if no cross product of edges has a gap.
+    /// True if the boxes have no gap along any cross product of two edges.
     #[inline(always)]
     pub fn edges(&self) -> R::Mask {
         self.pair::<0, 0>()

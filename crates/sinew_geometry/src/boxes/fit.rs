@@ -18,8 +18,9 @@ impl Aabb {
 }
 
 impl Obb {
-    /// Returns a box around points along the principal axes of their covariance (Gottschalk, Lin & Manocha 1996),
-    /// largest spread first. The time is linear. The box fits well if the points fill a volume evenly.
+    /// Returns a box around points along the principal axes of their covariance (Gottschalk, Lin & Manocha 1996). The
+    /// first axis is that of the largest spread. Takes time linear in the number of points. The box fits well if the
+    /// points fill a volume evenly.
     ///
     /// Every point is in the box by [`Cuboid::contains_point`]. Half extents are 0, except for rounding, along
     /// directions in which the points have no extent. `None` if there are no points or a number is not finite.
@@ -28,19 +29,20 @@ impl Obb {
         Some(around(points, principal_axes(&cloud.points)))
     }
 
-    /// Returns a box around points with the least volume that a search finds, or the least area for flat points. For
-    /// cooking, not for every step: the search takes some milliseconds.
+    /// Searches for the box with the least volume around points, or with the least area around points in a plane. The
+    /// search takes some milliseconds: use it when assets are built, not in every step.
     ///
     /// The least box has two adjacent faces that each contain an edge of the convex hull (O'Rourke 1985). The search
     /// uses the hull of up to 52 extreme points and up to 64 of its edges. It tries all boxes with an axis along the
     /// normal of a facet or across two edges, each with the best rotation about this axis. The best eight, the box of
     /// [`from_points_pca`](Self::from_points_pca) and the axis-aligned one are then rotated about each of their axes
     /// until they stop improving. So the result is the least box if that box has a face on a facet, or two opposite
-    /// edges in two opposite faces (boxes, prisms, a regular tetrahedron). The result is never larger than the other
-    /// two. Over 10,000 random clouds of 4 to 63 points it was at most 6 % above the least volume found by random
-    /// rotations, and below that volume on average.
+    /// edges in two opposite faces (boxes, prisms, a regular tetrahedron). The result is never larger than the box of
+    /// [`from_points_pca`](Self::from_points_pca) or the axis-aligned box. Over 10,000 random clouds of 4 to 63 points
+    /// its volume was at most 6 % above the least volume found by random rotations, and below that volume on average.
     ///
-    /// Guarantees for points and degenerate input are those of [`from_points_pca`](Self::from_points_pca).
+    /// The guarantees on containment, flat points and invalid input are those of
+    /// [`from_points_pca`](Self::from_points_pca).
     pub fn from_points(points: &[Vec3]) -> Option<Self> {
         let cloud = Cloud::new(points)?;
         let extreme = cloud.extreme_points();
@@ -53,9 +55,9 @@ impl Obb {
         Some(around(points, best.axes))
     }
 
-    /// Returns a box around two boxes: the one with the least volume along the axes of either, or along the principal
-    /// axes of their corners, each rotated about its axes until it stops improving. If one box contains the other, the
-    /// result is that box. Contains all corners except for rounding.
+    /// Returns a box around two boxes. If one box contains the other, the result is the containing box. Otherwise the
+    /// search starts with the axes of each box and the principal axes of all corners, rotates each about its axes until
+    /// the volume stops decreasing, and returns the least box. The result contains all corners except for rounding.
     #[must_use]
     pub fn merge(&self, other: &Self) -> Self {
         let corners: [Vec3; 16] = core::array::from_fn(|k| [self, other][k / 8].corners()[k % 8]);
@@ -71,16 +73,16 @@ impl Obb {
     }
 }
 
-/// Largest number of rounds about each axis in [`Cloud::improved`].
+/// Largest number of rounds in [`Cloud::improved`]; each round rotates the box about all three axes.
 const ROUNDS: usize = 12;
-/// Number of points above which a hull is searched by its extreme points: the most that [`DIRECTIONS`] find in two
-/// frames.
+/// Number of points above which the search uses only the extreme points: the largest number of points that the 13
+/// [`DIRECTIONS`] and their opposites select in two frames.
 const MOST_POINTS: usize = 52;
-/// Number of the cheapest boxes of the search that are improved.
+/// Number of boxes, the cheapest ones, that the search improves by rotation.
 const MOST_STARTS: usize = 8;
-/// Largest number of hull edges, the longest first, whose pairs are tried.
+/// Largest number of hull edges whose cross products are tried; the longest edges are used.
 const MOST_EDGES: usize = 64;
-/// Relative distance by which a point may be beyond the plane of a facet.
+/// Distance by which a point may be beyond the plane of a facet, as a share of the points' bounds.
 const FLAT: f32 = 1e-5;
 
 /// Normals of the faces, edges and corners of a cube, one per opposite pair.
@@ -136,8 +138,8 @@ impl Cloud {
         a * b * c
     }
 
-    /// Returns the points furthest along [`DIRECTIONS`], in the given axes and in the principal ones; all points if
-    /// they are few.
+    /// Returns the points furthest along [`DIRECTIONS`] and their opposites, in the world axes and in the principal
+    /// axes; all points if there are at most [`MOST_POINTS`].
     fn extreme_points(&self) -> Self {
         if self.points.len() <= MOST_POINTS {
             return Self { points: self.points.clone(), size: self.size };
@@ -279,7 +281,7 @@ fn flat_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
         }
         hull.push(p);
         if k + 1 == points.len() {
-            // The lower half is finished; the pass back must not remove its corners.
+            // The lower half of the hull is finished; the pass over the upper half must not remove its corners.
             least = hull.len();
         }
     }
@@ -293,7 +295,7 @@ fn turn(a: Vec2, b: Vec2, c: Vec2) -> f32 {
     u.x * v.y - u.y * v.x
 }
 
-/// Axes of the covariance, the largest spread first.
+/// Returns the principal axes of the points' covariance, the axis of the largest spread first.
 fn principal_axes(points: &[Vec3]) -> [Vec3; 3] {
     let share = 1.0 / points.len() as f32;
     let mean = points.iter().fold(Vec3::ZERO, |sum, &p| sum + p * share);
@@ -312,7 +314,8 @@ fn around(points: &[Vec3], [x, y, _]: [Vec3; 3]) -> Obb {
         (min3(lo, q), max3(hi, q))
     });
     placed.center = placed.point((lo + hi) * 0.5);
-    // Recomputed from the rounded centre, by the formula that decides containment.
+    // The half extents are computed from the rounded centre by the formula of `contains_point`, so that the box
+    // contains every point.
     let half_extents = points.iter().fold(Vec3::ZERO, |half, &p| max3(half, abs3(placed.local_point(p))));
     Obb { center: placed.center, rotation, half_extents }
 }

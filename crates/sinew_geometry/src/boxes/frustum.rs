@@ -22,7 +22,7 @@ pub struct Frustum {
 pub enum Visibility {
     /// The whole box is visible.
     Inside,
-    /// A part is visible, or the test could not decide.
+    /// A part is visible, or the test cannot rule that out.
     Intersects,
     /// No part is visible.
     Outside,
@@ -35,16 +35,22 @@ impl Frustum {
     /// # Panics
     /// If a number is not finite or out of its range.
     pub fn new(world_from_eye: Transform, fov_y: f32, aspect: f32, near: f32, far: f32) -> Self {
-        assert!(world_from_eye.is_finite(), "the place of an eye must be finite");
-        assert!(fov_y > 0.0 && fov_y < core::f32::consts::PI, "an angle of view is above 0 and below π");
-        assert!(aspect > 0.0 && aspect < f32::INFINITY, "a picture has a width and a height");
-        assert!(near > 0.0 && near < far && far < f32::INFINITY, "the near plane is before the far one");
+        assert!(world_from_eye.is_finite(), "the frame of a camera must be finite");
+        assert!(
+            fov_y > 0.0 && fov_y < core::f32::consts::PI,
+            "the angle of view must be above 0 and below π"
+        );
+        assert!(aspect > 0.0 && aspect < f32::INFINITY, "the aspect ratio must be positive and finite");
+        assert!(
+            near > 0.0 && near < far && far < f32::INFINITY,
+            "0 < near < far must hold, with a finite far"
+        );
         let slope = trig::tan(0.5 * fov_y);
         Self { world_from_eye, slopes: Vec2::new(slope * aspect, slope), near, far }
     }
 
-    /// Returns the segment under a position in the picture, from the near plane to the far one. x is −1 at the left
-    /// edge and 1 at the right, y is −1 at the bottom and 1 at the top. For picking.
+    /// Returns the segment that a position in the picture covers, from the near plane to the far plane; use it for
+    /// picking. x is −1 at the left edge and 1 at the right edge, y is −1 at the bottom and 1 at the top.
     pub fn ray(&self, screen: Vec2) -> Ray {
         let sight = Vec3::new(screen.x * self.slopes.x, screen.y * self.slopes.y, -1.0);
         Ray::between(
@@ -53,7 +59,8 @@ impl Frustum {
         )
     }
 
-    /// Returns the corners: bit 0 of the index is set on the right, bit 1 at the top, bit 2 on the far plane.
+    /// Returns the eight corners. Of a corner's index, bit 0 is set on the right, bit 1 at the top, and bit 2 on the
+    /// far plane.
     pub fn corners(&self) -> [Vec3; 8] {
         core::array::from_fn(|index| {
             let side = |k: usize| if index >> k & 1 == 1 { 1.0 } else { -1.0 };
@@ -62,9 +69,9 @@ impl Frustum {
         })
     }
 
-    /// Returns the position of a box relative to the frustum, by the box's extent across each plane (Assarsson & Möller
-    /// 2000), and by the frustum's corners beyond each face of the box. Never `Outside` if a part is visible, nor
-    /// `Inside` if a part is not, except for rounding; a box just outside an edge may be reported as intersecting.
+    /// Classifies a box against the planes of the frustum (Assarsson & Möller 2000), and the frustum's corners against
+    /// the faces of the box. Except for rounding, the result is never `Outside` if a part of the box is visible, and
+    /// never `Inside` if a part is not. A box just outside an edge of the frustum may be reported as `Intersects`.
     pub fn sees(&self, cuboid: &impl Cuboid) -> Visibility {
         let placed = cuboid.placed();
         match self.across_planes(placed.center, |normal| placed.half_width(normal)) {
@@ -73,12 +80,13 @@ impl Frustum {
         }
     }
 
-    /// [`sees`](Self::sees) for a ball.
+    /// Like [`sees`](Self::sees), for a ball; a ball just outside an edge or corner may be reported as `Intersects`.
     pub fn sees_sphere(&self, sphere: &Sphere) -> Visibility {
         self.across_planes(sphere.center, |_| sphere.radius)
     }
 
-    /// Returns the visibility of a shape around `center` that extends by `reach` along a unit normal, metres.
+    /// Classifies a shape around `center` against the six planes. `reach` returns the shape's extent from the centre
+    /// along a unit normal, metres.
     fn across_planes(&self, center: Vec3, reach: impl Fn(Vec3) -> f32) -> Visibility {
         let from_eye = center - self.world_from_eye.translation;
         let mut visibility = Visibility::Inside;
@@ -94,7 +102,7 @@ impl Frustum {
         visibility
     }
 
-    /// Returns the inward unit normals, and the offsets of the planes along them from the eye, metres.
+    /// Returns each plane's inward unit normal, and its distance from the eye along that normal, metres.
     fn planes(&self) -> [(Vec3, f32); 6] {
         let Vec2 { x, y } = self.slopes;
         let side = |v: Vec3| (self.world_from_eye.rotation * v.normalize(), 0.0);
@@ -117,8 +125,8 @@ impl Frustum {
     }
 }
 
-/// Returns the index of the first box that a segment hits, and the hit: the object under a position in the picture,
-/// with [`Frustum::ray`]. Among equal hits the first in the slice is returned.
+/// Returns the index of the first box along a ray, and the hit. With a ray of [`Frustum::ray`], this is the object at a
+/// position in the picture. Among equal hits the first box in the slice is returned.
 pub fn pick<B: Cuboid>(boxes: &[B], ray: &Ray) -> Option<(usize, RayHit)> {
     let hits = boxes.iter().enumerate().filter_map(|(index, cuboid)| Some((index, cuboid.cast_ray(ray)?)));
     hits.reduce(|first, other| if other.1.fraction < first.1.fraction { other } else { first })

@@ -15,25 +15,25 @@
 //! assert!(Aabb::around(Vec3::ZERO, Vec3::splat(0.5)).penetration(&plank).is_none());
 //! ```
 //!
-//! # Which file
-//! [`Cuboid`] has the queries of both kinds of boxes: points, rays, measures. [`Overlap`] tests pairs. `fit.rs` fits
-//! boxes around points, `frustum.rs` culls and picks.
+//! # Contents
+//! The trait [`Cuboid`] has the queries of one box: points, rays, volume and mass. The trait [`Overlap`] tests pairs.
+//! `fit.rs` fits boxes around points; `frustum.rs` culls and picks.
 //!
 //! # Separating axes
-//! Separating axes are implemented several times, because each implementation is the fastest for its query:
-//! - `fifteen.rs` only decides whether two boxes overlap, without a root, for one pair or for eight;
-//! - `separation.rs` finds the best axis of one pair, for manifolds and depths: it stops at the first axis that
-//!   separates, tries the cached one first, and skips edges by an estimate;
+//! The separating axis test is implemented several times, because each implementation is the fastest for its query:
+//! - `fifteen.rs` only decides whether two boxes overlap, without square roots, for one pair or for eight at a time;
+//! - `separation.rs` finds the best axis of one pair, for manifolds and depths, and skips edges by an estimate; the
+//!   manifold code tests the cached axis first and stops at the first axis that separates;
 //! - `batch/separation.rs` finds the best axis of eight pairs with SIMD: without early exit, in the frame of A, which
 //!   is cheaper to set up than axes in the world;
-//! - `collide/polytope.rs` is for hulls: arcs on the Gauss map (Gregorius, GDC 2013) select the pairs of edges that
-//!   count; two boxes have nine pairs, two hulls may have thousands.
+//! - `collide/polytope.rs` is for hulls: two hulls may have thousands of pairs of edges, and arcs on the Gauss map
+//!   (Gregorius, GDC 2013) select those that are faces of the Minkowski difference.
 //!
-//! All are tested against brute force in `f64`.
+//! Tests compare all of them with brute force in `f64`.
 //!
 //! # Formulas
-//! - A point `p` in a box with centre `c`, axes `aₖ` and half extents `hₖ`: `qₖ = (p − c)·aₖ`, inside if all `|qₖ| ≤ hₖ`;
-//!   the closest point clamps `q` to `±h` (Ericson, "Real-Time Collision Detection", 2005, §5.1.3).
+//! - A point `p` in a box with centre `c`, axes `aₖ` and half extents `hₖ`: `qₖ = (p − c)·aₖ`, inside if all `|qₖ| ≤
+//!   hₖ`; the closest point clamps `q` to `±h` (Ericson, "Real-Time Collision Detection", 2005, §5.1.3).
 //! - Two boxes: 15 separating axes, three faces of each and nine crossed edges (Gottschalk, Lin & Manocha, "OBBTree",
 //!   SIGGRAPH 1996); overlap without square roots (Ericson 2005, §4.4.1), depth by the least overlap along one of them.
 //! - A ball: the signed distance of its centre minus the radius. A capsule: the distance of its core to the box; if the
@@ -46,8 +46,9 @@
 //! km.
 //!
 //! Separated boxes closer than 5e-7 of their sizes and distance count as touching. Edges within 0.1° of parallel define
-//! no reliable direction: boxes that only such a direction separates, by up to 0.2 % of their sizes and distance, count
-//! as touching, and depths are overestimated by as much. Points, balls and capsules are compared without tolerance.
+//! no reliable direction: boxes separated only along such a direction, by up to 0.2 % of their sizes and distance,
+//! count as touching, and their depth is overestimated by up to the same amount. Points, balls and capsules are
+//! compared without tolerance.
 
 use sinew_math::Vec3;
 
@@ -75,11 +76,13 @@ pub use point::{Penetration, SurfacePoint};
 pub(crate) use point::{box_distance, distance_beyond};
 pub use separation::AxisOf;
 
+/// Checks the half extents of a box.
+///
 /// # Panics
-/// If one is negative or not finite.
+/// If a half extent is negative or not finite.
 fn expect_half_extents(half: Vec3) {
     assert!(
         half.is_finite() && half.cmpge(Vec3::ZERO).all(),
-        "half extents of a box are finite and not negative"
+        "the half extents of a box must be finite and not negative"
     );
 }

@@ -18,12 +18,15 @@ pub struct Obb {
 }
 
 impl Obb {
-    /// Creates a box from its parts.
+    /// Creates a box from its centre, rotation and half extents.
     ///
     /// # Panics
     /// If a number is not finite or a half extent is negative.
     pub fn new(center: Vec3, rotation: Rotation, half_extents: Vec3) -> Self {
-        assert!(center.is_finite() && rotation.is_finite(), "the centre of a box must be finite");
+        assert!(
+            center.is_finite() && rotation.is_finite(),
+            "the centre and rotation of a box must be finite"
+        );
         super::expect_half_extents(half_extents);
         Self { center, rotation, half_extents }
     }
@@ -41,7 +44,7 @@ impl Obb {
         Transform::new(self.center, self.rotation)
     }
 
-    /// Returns the smallest axis-aligned box around this one, except for rounding: half extents `|R| h` (Arvo,
+    /// Returns the smallest axis-aligned box around this box, except for rounding. Its half extents are `|R| h` (Arvo,
     /// "Transforming axis-aligned bounding boxes", Graphics Gems 1990).
     pub fn bounds(&self) -> Aabb {
         Shape::Box { half_extents: self.half_extents }.aabb(&self.to_transform())

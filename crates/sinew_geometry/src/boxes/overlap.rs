@@ -14,7 +14,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// Creates a sphere from its centre and radius.
+    /// Creates a ball from its centre and radius.
     ///
     /// # Panics
     /// If a number is not finite or the radius is negative.
@@ -35,7 +35,7 @@ pub struct Capsule {
 }
 
 impl Capsule {
-    /// Creates a capsule from its parts.
+    /// Creates a capsule from the ends of its segment and its radius.
     ///
     /// # Panics
     /// If a number is not finite or the radius is negative.
@@ -47,21 +47,21 @@ impl Capsule {
 }
 
 fn expect_radius(radius: f32) {
-    assert!((0.0..f32::INFINITY).contains(&radius), "a radius is finite and not negative");
+    assert!((0.0..f32::INFINITY).contains(&radius), "a radius must be finite and not negative");
 }
 
-/// Overlap of two convex shapes of which at least one is a box. Touching and containing count as overlap. Swapped
-/// arguments give the same result except for rounding, with the opposite direction.
+/// Overlap of two convex shapes, at least one of which is a box. Shapes that touch overlap, and so do shapes of which
+/// one contains the other. Swapped arguments give the same result except for rounding, with the opposite direction.
 pub trait Overlap<Other> {
     /// True if the shapes have a point in common.
     fn overlaps(&self, other: &Other) -> bool;
 
-    /// Returns the shortest displacement of `other` after which the shapes only touch, as direction and depth. `Some`
-    /// exactly if [`overlaps`](Self::overlaps) is true.
+    /// Returns the shortest displacement of `other` after which the shapes only touch, as a direction and a depth.
+    /// Returns `Some` exactly if [`overlaps`](Self::overlaps) is true.
     fn penetration(&self, other: &Other) -> Option<Penetration>;
 }
 
-/// Compares the intervals along each axis, exactly.
+/// Compares the boxes' intervals along each axis, without rounding.
 impl Overlap<Aabb> for Aabb {
     #[inline]
     fn overlaps(&self, other: &Aabb) -> bool {

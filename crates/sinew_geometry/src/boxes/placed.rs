@@ -2,7 +2,7 @@
 
 use sinew_math::{Transform, Vec3, max3, min, min3};
 
-/// A box with its axes computed, for many queries.
+/// A box with its axes computed. Convert a box once to run many queries on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedBox {
     /// Centre, metres.
@@ -14,7 +14,8 @@ pub struct PlacedBox {
 }
 
 impl PlacedBox {
-    /// Creates a box around the origin of a frame, along the axes of the frame. Half extents in metres, ≥ 0, unchecked.
+    /// Creates a box around the origin of a frame, along the axes of the frame. `half` are its half extents, metres;
+    /// they must be ≥ 0, which is not checked.
     pub fn new(half: Vec3, frame: &Transform) -> Self {
         let m = frame.rotation.to_mat3();
         Self { center: frame.translation, axes: [m.x_axis, m.y_axis, m.z_axis], half }
@@ -74,7 +75,7 @@ impl PlacedBox {
         min(min(self.half.x, self.half.y), self.half.z)
     }
 
-    /// Face whose normal is closest to `direction`, as its axis and sign.
+    /// Returns the face whose normal is closest to `direction`: the index of its axis, and 1 or −1 for its side.
     pub(crate) fn facing(&self, direction: Vec3) -> (usize, f32) {
         let d = self.local_vector(direction);
         let axis = largest_axis(d);

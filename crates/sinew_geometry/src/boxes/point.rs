@@ -8,14 +8,14 @@ use sinew_math::{Vec3, abs3, max3};
 pub struct SurfacePoint {
     /// Point on the surface, metres.
     pub point: Vec3,
-    /// Outward unit normal: for an outside point, from the surface to the point; for an inside one, that of the nearest
-    /// face.
+    /// Outward unit normal. For a query point outside, it points from the surface to that point; for a point inside, it
+    /// is the normal of the nearest face.
     pub normal: Vec3,
     /// Distance from the surface to the query point along the normal, metres; negative inside.
     pub distance: f32,
 }
 
-/// Penetration depth, and the direction of the shortest way out.
+/// Penetration of two shapes: its depth, and the direction of the shortest way out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penetration {
     /// Depth, metres, ≥ 0; 0 if the shapes only touch.
@@ -32,9 +32,9 @@ impl PlacedBox {
         q.x.abs() <= self.half.x && q.y.abs() <= self.half.y && q.z.abs() <= self.half.z
     }
 
-    /// Returns the nearest surface point. Outside, the point clamped to the box is closest (Ericson, "Real-Time
-    /// Collision Detection", 2005, §5.1.3), and the normal points from there to `p`. Inside, the nearest face gives
-    /// both; the lowest axis among equals.
+    /// Returns the nearest surface point. If `p` is outside, this is `p` clamped to the box (Ericson, "Real-Time
+    /// Collision Detection", 2005, §5.1.3), and the normal points from there to `p`. If `p` is inside, the nearest face
+    /// gives the point and the normal; among equally near faces, the face of the lowest axis.
     pub(super) fn nearest_surface(&self, p: Vec3) -> SurfacePoint {
         let (distance, normal) = box_distance(self.half, self.local_point(p));
         let normal = self.vector(normal);
@@ -42,13 +42,14 @@ impl PlacedBox {
     }
 }
 
-/// Returns the signed distance to the box with these half extents around the origin, and the outward normal.
+/// Returns the signed distance of `p` to the box with these half extents around the origin, and the outward normal at
+/// the closest point of the surface.
 pub(crate) fn box_distance(half: Vec3, p: Vec3) -> (f32, Vec3) {
     distance_beyond(abs3(p) - half, p)
 }
 
-/// Returns the signed distance to a box and its outward normal. `beyond` is the excess beyond the nearer face along
-/// each axis, and the signs of `p` select the faces.
+/// Returns the signed distance to a box, and the outward normal at the closest point of its surface. `beyond` is the
+/// distance beyond the nearer face along each axis, negative inside; the signs of `p` select the nearer faces.
 pub(crate) fn distance_beyond(beyond: Vec3, p: Vec3) -> (f32, Vec3) {
     let outside = max3(beyond, Vec3::ZERO);
     let distance = outside.length();
@@ -62,7 +63,7 @@ pub(crate) fn distance_beyond(beyond: Vec3, p: Vec3) -> (f32, Vec3) {
     (beyond[axis], face_normal(beyond, p))
 }
 
-/// Axis of the face that is nearest from inside; the lowest axis among equals.
+/// Axis of the face nearest to a point inside, from the distances `beyond` the faces; the lowest axis among equals.
 fn nearest_face(beyond: Vec3) -> usize {
     let mut axis = 0;
     for k in 1..3 {

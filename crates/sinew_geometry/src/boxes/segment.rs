@@ -26,8 +26,8 @@ impl Segment {
         }
     }
 
-    /// Parameters of the closest points of two segments (Ericson 2005, §5.1.9). For parallel segments, one of the
-    /// closest pairs.
+    /// Parameters of the closest points on this segment and on the other (Ericson 2005, §5.1.9). If the segments are
+    /// parallel, the result is one of the closest pairs of points.
     pub fn closest_to_segment(&self, other: &Self) -> (f32, f32) {
         let (d1, d2) = (self.ends[1] - self.ends[0], other.ends[1] - other.ends[0]);
         let r = self.ends[0] - other.ends[0];
@@ -39,7 +39,7 @@ impl Segment {
             return (0.5, other.closest(self.ends[0]));
         }
         let (b, c) = (d1.dot(d2), d1.dot(r));
-        // Equals a e sin². Computed by the cross product, since a e − b² cancels for long near-parallel segments.
+        // Equals a e sin². The cross product is used because a e − b² loses its digits for nearly parallel segments.
         let cross = d1.cross(d2);
         let denominator = cross.dot(cross);
         let s =
@@ -65,7 +65,7 @@ pub(crate) fn gap(half: Vec3, core: &Segment) -> Option<Gap> {
     (squared > 0.0).then(|| Gap { on_core, on_box, distance: squared.sqrt() })
 }
 
-/// Parameter of the segment's point closest to the box, 0..=1; an end if the ends are as close as the interior.
+/// Parameter of the segment's point closest to the box, 0..=1; 0 or 1 if an end is as close as the interior.
 ///
 /// The squared distance is convex along the segment. Its slope is piecewise linear, with breaks at the crossings of
 /// face planes: the two breaks between which the slope changes sign enclose its zero.
@@ -127,7 +127,8 @@ fn edge(half: Vec3, axis: usize, positive: [bool; 2]) -> Segment {
     Segment { ends: [from, to] }
 }
 
-/// Returns the signed distance along the normal of the face with the shortest way out of the box, and the points.
+/// Finds the face through which the core leaves the box by the shortest way. Returns the signed distance along its
+/// normal, and the deepest points.
 pub(crate) fn best_face(half: Vec3, core: &Segment) -> (f32, Meeting) {
     let mut best = (f32::NEG_INFINITY, 0, 1.0);
     for axis in 0..3 {
@@ -146,8 +147,8 @@ pub(crate) fn best_face(half: Vec3, core: &Segment) -> (f32, Meeting) {
     (gap, Meeting { normal, on_box: on_core - normal * gap, on_core })
 }
 
-/// Like [`best_face`], for the cross products of the segment and an edge; `None` if the segment is parallel to all
-/// edges (sine at most `parallel_sine`).
+/// Like [`best_face`], for the cross products of the segment with the box's axes instead of the faces. Skips axes to
+/// which the segment is parallel (sine at most `parallel_sine`); `None` if no axis is left.
 pub(crate) fn best_edge(half: Vec3, core: &Segment, parallel_sine: f32) -> Option<(f32, Meeting)> {
     let along = core.ends[1] - core.ends[0];
     let mut best: Option<(f32, usize, Vec3)> = None;
@@ -172,8 +173,8 @@ pub(crate) fn best_edge(half: Vec3, core: &Segment, parallel_sine: f32) -> Optio
     Some((gap, Meeting { normal, on_box: edge.at(t), on_core: core.at(s) }))
 }
 
-/// Clips `stretch` to the part of the segment within `half` of the centre along `axis`; returns false if no part is
-/// left.
+/// Clips `stretch`, a range of the segment's parameter, to the part within `half` of the origin along `axis`. Returns
+/// false if no part is left.
 pub(crate) fn cut(segment: &Segment, axis: usize, half: f32, stretch: &mut (f32, f32)) -> bool {
     let from = segment.ends[0][axis];
     let step = segment.ends[1][axis] - from;

@@ -1,15 +1,15 @@
-//! Separating axes of two boxes (Gottschalk, Lin & Manocha, "OBBTree", SIGGRAPH 1996): three faces of each and nine pairs of
-//! edges.
+//! Separating axes of two boxes (Gottschalk, Lin & Manocha, "OBBTree", SIGGRAPH 1996): three faces of each and nine
+//! pairs of edges.
 
 use super::Penetration;
 use super::fifteen::FifteenAxes;
 use super::placed::{PlacedBox, sign};
 use sinew_math::{Vec3, max};
 
-/// Sine below which edges count as parallel: their direction adds only rounding to that of the faces.
+/// Sine below which edges count as parallel. Rounding dominates their cross product, and the face normals suffice.
 pub(super) const PARALLEL_SINE: f32 = 1e-5;
 
-/// A candidate normal from A to B, and the gap along it, metres.
+/// A candidate for the separating axis: a unit normal from A to B, and the gap along it, metres.
 #[derive(Clone, Copy)]
 pub(crate) struct Axis {
     pub normal: Vec3,
@@ -17,7 +17,7 @@ pub(crate) struct Axis {
     pub of: AxisOf,
 }
 
-/// Source of a separating axis of two polytopes: a face of A, a face of B, or an edge of each, by index.
+/// Features that define a separating axis of two polytopes: a face of A, a face of B, or an edge of each, by index.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AxisOf {
     /// Normal of a face of A.
@@ -37,7 +37,7 @@ pub(crate) struct Crossed<'a> {
     cosine: [[f32; 3]; 3],
 }
 
-/// Relative error of the quick estimate of the gap across two edges times their sine.
+/// Relative error of the estimate in [`Crossed::edges_that_may_separate`].
 const ESTIMATE: f32 = 1e-4;
 
 impl<'a> Crossed<'a> {
@@ -45,7 +45,7 @@ impl<'a> Crossed<'a> {
         Self { a, b, offset: b.center - a.center, cosine: a.axes.map(|u| b.axes.map(|v| u.dot(v))) }
     }
 
-    /// Returns the face of A that separates best.
+    /// Returns the face of A with the largest gap along its normal.
     pub fn best_face_of_a(&self) -> Axis {
         let axis = |k: usize| {
             let along = self.offset.dot(self.a.axes[k]);
@@ -54,7 +54,7 @@ impl<'a> Crossed<'a> {
         better(better(axis(0), axis(1)), axis(2))
     }
 
-    /// Returns the face of B that separates best; the normal points from A to B.
+    /// Returns the face of B with the largest gap along its normal. The axis's normal points from A to B.
     pub fn best_face_of_b(&self) -> Axis {
         let axis = |k: usize| {
             let along = -self.offset.dot(self.b.axes[k]);
@@ -64,12 +64,12 @@ impl<'a> Crossed<'a> {
         better(better(axis(0), axis(1)), axis(2))
     }
 
-    /// Returns the best cross product of edges if it separates by more than `enough` (metres); otherwise `None` or an
-    /// axis that separates less. Skips parallel edges (sine below `parallel_sine`).
+    /// Returns the cross product of two edges with the largest gap if the gap exceeds `enough` (metres). Otherwise
+    /// returns `None` or an axis with a smaller gap. Skips parallel edges (sine below `parallel_sine`).
     pub fn best_edges(&self, parallel_sine: f32, enough: f32) -> Option<Axis> {
         let mut best: Option<Axis> = None;
-        for (k, may_part) in self.edges_that_may_part(enough).into_iter().enumerate() {
-            if !may_part {
+        for (k, may_separate) in self.edges_that_may_separate(enough).into_iter().enumerate() {
+            if !may_separate {
                 continue;
             }
             let Some(axis) = edges(self.a, self.b, (k / 3, k % 3), parallel_sine) else { continue };
@@ -80,9 +80,10 @@ impl<'a> Crossed<'a> {
         best
     }
 
-    /// Returns the pairs of edges that may separate by more than `enough` (metres), with the axis of B changing
-    /// fastest. Uses the gap times the sine, as in [`FifteenAxes`].
-    fn edges_that_may_part(&self, enough: f32) -> [bool; 9] {
+    /// Returns true for each pair of edges along whose cross product the gap may exceed `enough` (metres). Pair
+    /// `3 i + j` is axis `i` of A and axis `j` of B. The test compares the gap times the sine, as in [`FifteenAxes`],
+    /// with an estimate of the rounding error.
+    fn edges_that_may_separate(&self, enough: f32) -> [bool; 9] {
         let t = self.a.local_vector(self.offset).to_array();
         let (ha, hb) = (self.a.half.to_array(), self.b.half.to_array());
         let (r, s) = (&self.cosine, self.cosine.map(|row| row.map(f32::abs)));
@@ -96,18 +97,18 @@ impl<'a> Crossed<'a> {
                 let along = t[i2] * r[i1][j] - t[i1] * r[i2][j];
                 let width = (ha[i1] * s[i2][j] + ha[i2] * s[i1][j]) + (hb[j1] * s[i][j2] + hb[j2] * s[i][j1]);
                 let sine = max(1.0 - r[i][j] * r[i][j], 0.0).sqrt();
-                let parts_less = along.abs() - width + slack <= enough * sine;
-                may[3 * i + j] = !parts_less;
+                let separates_less = along.abs() - width + slack <= enough * sine;
+                may[3 * i + j] = !separates_less;
             }
         }
         may
     }
 }
 
-/// The next two axes after each axis, cyclic.
+/// The two axes that follow each axis in cyclic order.
 const AFTER: [(usize, usize); 3] = [(1, 2), (2, 0), (0, 1)];
 
-/// Returns the axis that separates better; the first among equals.
+/// Returns the axis with the larger gap; the first if the gaps are equal.
 fn better(first: Axis, second: Axis) -> Axis {
     if second.separation > first.separation { second } else { first }
 }
@@ -117,8 +118,8 @@ fn width(half: Vec3, cosines: [f32; 3]) -> f32 {
     half.x * cosines[0].abs() + half.y * cosines[1].abs() + half.z * cosines[2].abs()
 }
 
-/// Axis of face `k` of a box. `along` is the offset of the other box's centre along the face's axis, and `width` the
-/// half width of the other box. `toward_b` is −1 for a face of B.
+/// Returns the separating axis of face `k` of the box `of`. `along` is the offset of the other box's centre along that
+/// face's normal, `width` the half width of the other box along it. `toward_b` is 1 for a face of A, −1 for one of B.
 fn facing(
     of: &PlacedBox,
     along: f32,
@@ -151,7 +152,8 @@ fn edges(a: &PlacedBox, b: &PlacedBox, (i, j): (usize, usize), parallel_sine: f3
     Some(Axis { normal, separation, of: AxisOf::Edges(i, j) })
 }
 
-/// Returns the axis with this source, with the bits of [`Crossed`]; `None` if the source is not valid.
+/// Returns the separating axis of the given features, with the same bits as [`Crossed`] computes. `None` if an index is
+/// out of range or the edges are parallel.
 pub(crate) fn axis(a: &PlacedBox, b: &PlacedBox, of: AxisOf, parallel_sine: f32) -> Option<Axis> {
     match of {
         AxisOf::FaceA(k) => (k < 3).then(|| face(a, b, 1.0, AxisOf::FaceA, k)),
@@ -161,8 +163,8 @@ pub(crate) fn axis(a: &PlacedBox, b: &PlacedBox, of: AxisOf, parallel_sine: f32)
     }
 }
 
-/// Returns the penetration of two boxes. The faces of the Minkowski difference have these 15 normals, so the best of
-/// them gives the shortest way out.
+/// Returns the penetration of two boxes; `None` if they are apart. The 15 axes are the normals of the faces of the
+/// Minkowski difference, so the axis with the least overlap is the shortest way out.
 pub(super) fn penetration(a: &PlacedBox, b: &PlacedBox) -> Option<Penetration> {
     if !FifteenAxes::of(a, b).overlap() {
         return None;

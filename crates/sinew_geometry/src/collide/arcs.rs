@@ -8,7 +8,7 @@ use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 /// Number of edges of one polytope that are compared with eight of the other in one call.
 const CHUNK: usize = 64;
 
-/// An edge with the normals of its two faces.
+/// An edge with the normals of its two faces, which are the ends of its arc on the Gauss map.
 #[derive(Clone, Copy)]
 pub(super) struct Arc {
     /// Index of the half-edge that represents the edge.
@@ -31,9 +31,9 @@ impl Arc {
         }
     }
 
-    /// Returns the direction across both edges that points out of this polytope, not of unit length. `Some` only if the
-    /// Minkowski difference has a face there, which means that this arc and the reversed other arc cross. The arc of a
-    /// triangle's edge, between opposite normals, is half a circle; `along` selects the half.
+    /// Returns the cross product of both edges, pointing out of this polytope, not of unit length. `None` if the
+    /// Minkowski difference has no face with this normal, which means that this arc and the reversed other arc do not
+    /// cross. The arc of a triangle's edge, between opposite normals, is half a circle; `along` selects the half.
     pub fn crossing(&self, other: &Self) -> Option<Vec3> {
         let [c, d] = other.normals.map(|n| n.dot(self.along));
         if c * d >= 0.0 {
@@ -48,7 +48,7 @@ impl Arc {
     }
 }
 
-/// Calls `visit` with all pairs of edges whose arcs may cross, in an unspecified order.
+/// Calls `visit` with all pairs of edges whose arcs cross, in an unspecified order.
 pub(super) fn for_each_crossing(a: &Polytope<'_>, b: &Polytope<'_>, mut visit: impl FnMut(&Arc, &Arc)) {
     let mut left = b.topology.edge_numbers();
     loop {
@@ -101,7 +101,8 @@ impl ArcLanes {
     }
 }
 
-/// Kernel that evaluates [`Arc::crossing`] for eight arcs and each of some others: bit `k` is lane `k`.
+/// Kernel that tests eight arcs against each of `others`. Bit `k` of a result is set if arc `k` crosses that other arc:
+/// see [`Arc::crossing`].
 struct Cross<'a> {
     arcs: &'a ArcLanes,
     others: &'a [Arc],
@@ -142,9 +143,8 @@ mod tests {
     use crate::hull::Hull;
     use sinew_math::Random;
 
-    /// Eight at a time and one by one find the same pairs, each once.
     #[test]
-    fn lane_test_finds_the_crossing_arcs() {
+    fn simd_test_of_arcs_finds_the_same_pairs_as_the_scalar_test() {
         let mut random = Random::new(12);
         let mut found = 0;
         for corners in [4, 5, 8, 20, 60, 120] {
@@ -167,6 +167,6 @@ mod tests {
             assert_eq!(crossed, expected, "{corners} corners");
             found += crossed.len();
         }
-        assert!(found > 300, "{found}");
+        assert!(found > 300, "only {found} pairs of arcs cross");
     }
 }

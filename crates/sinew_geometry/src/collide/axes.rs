@@ -11,12 +11,12 @@ use sinew_math::{Vec3, min};
 /// Sine below which edges count as parallel; then the face axes suffice.
 pub(super) const PARALLEL_SINE: f32 = 0.005;
 
-/// Direction that breaks ties between the faces of A and B by geometry, so that neither the order of the shapes nor
-/// rounding decides. No common direction of a level (axes, diagonals) is perpendicular to it.
+/// Direction that breaks ties between the faces of A and B, so that neither the order of the shapes nor rounding
+/// decides between them. It is perpendicular to none of the directions that are common in levels (axes and diagonals).
 pub(super) const TIE_DIRECTION: Vec3 = Vec3::new(0.331, 0.873, 0.357);
 
-/// Length differences below which the choice of features ignores them, metres: 1 % of the thinner shape's half width,
-/// at most 0.5 mm.
+/// Length differences that the choice of features ignores, metres: up to 1 % of the thinner shape's half width, at most
+/// 0.5 mm.
 pub(super) fn tolerance(half_width_a: f32, half_width_b: f32) -> f32 {
     min(0.0005, 0.01 * min(half_width_a, half_width_b))
 }
@@ -29,8 +29,8 @@ pub(super) fn choose_face(a: Axis, b: Axis, tolerance: f32, tie: Vec3) -> Axis {
     if a_wins { a } else { b }
 }
 
-/// Chooses the edges over the face only if they are clearly the better axis: faces give up to four points and are more
-/// stable.
+/// Returns the axis of the edges if its gap is clearly larger than that of the face, otherwise the face: a face gives
+/// up to four points and is more stable.
 pub(super) fn choose(face: Axis, edges: Option<Axis>, tolerance: f32) -> Axis {
     let least = least_of_edges(&face, tolerance);
     edges.filter(|edges| edges.separation > least).unwrap_or(face)
@@ -46,10 +46,12 @@ pub(super) trait Faceted {
     /// Returns the index and position of the corner furthest along a direction.
     fn corner(&self, direction: Vec3) -> (usize, Vec3);
 
-    /// Returns the edge that an axis names (if several, the furthest along a direction), and its feature.
+    /// Returns the edge with the number of an [`AxisOf`], and its feature name. If several edges have the number (four
+    /// parallel edges of a box), the edge furthest along `direction` is returned.
     fn edge_named(&self, number: usize, direction: Vec3) -> (Segment, u16);
 
-    /// Pushes the face of `other` that faces this solid, clipped to face `face`: see [`push_faces`].
+    /// Pushes the face of `other` that is opposite to this solid's face `face`, clipped to that face: see
+    /// [`push_faces`].
     fn push_faces(
         &self,
         face: usize,
@@ -60,8 +62,8 @@ pub(super) trait Faceted {
         out: &mut Manifold,
     ) -> bool;
 
-    /// Pushes the closest points of this solid and a separated one, by testing all corners and edges: slow but
-    /// reliable, for the rare pairs that pass corner by corner or edge by edge. `normal` separates the solids.
+    /// Pushes the closest points of this solid and `other`, which `normal` separates. The search tests all corners and
+    /// edges. It is slow but reliable, for the rare pairs whose closest features are corners or edges.
     fn push_closest(&self, other: &Self, normal: Vec3, margin: f32, tolerance: f32, out: &mut Manifold);
 }
 
@@ -101,7 +103,7 @@ fn push_edges(
     true
 }
 
-/// Pushes B's deepest corner, for overlaps that no face or edge describes.
+/// Pushes B's deepest corner, for overlaps where neither the faces nor the edges gave a point.
 fn push_support<S: Faceted>(a: &S, b: &S, axis: &Axis, out: &mut Manifold) {
     let ((of_a, _), (of_b, corner)) = (a.corner(axis.normal), b.corner(-axis.normal));
     out.normal = axis.normal;
@@ -109,8 +111,8 @@ fn push_support<S: Faceted>(a: &S, b: &S, axis: &Axis, out: &mut Manifold) {
     out.push(position, axis.separation, pair(feature::vertex(of_a), feature::vertex(of_b)));
 }
 
-/// Pushes the other shape's face, clipped to the reference face. Returns false and pushes nothing if the shapes pass
-/// beside the face, so that the result would not be their distance.
+/// Pushes the other shape's face, clipped to the reference face. Returns false and pushes nothing if the shapes are
+/// separated and the other face is beside the reference face, so that the points would not give their distance.
 pub(super) fn push_faces<const N: usize>(
     reference: &impl Reference,
     (incident, corners): (u16, impl Iterator<Item = Incident>),
@@ -162,9 +164,9 @@ impl Bridge {
     }
 }
 
-/// Pushes the contact of separated shapes from candidate bridges, of which `best` is the shortest. Parallel edges are
-/// equally close along a line whose ends are corners: `corners` are all bridges from corners. `size` is the size of the
-/// shapes, `fallback` the separating direction.
+/// Pushes the contact of separated shapes. `best` is the shortest bridge between them. `corners` are all bridges from
+/// corners: those about as short as `best` are pushed too, because parallel edges are equally close along a line whose
+/// ends are corners. `size` is the size of the shapes; `fallback` is the normal if the gap is too small to define one.
 pub(super) fn push_bridges<const N: usize>(
     best: Bridge,
     corners: impl Iterator<Item = Bridge>,

@@ -15,26 +15,26 @@ pub(super) fn collide(
     a: &PlacedBox,
     b: &PlacedBox,
     margin: f32,
-    parting: &mut SeparationCache,
+    cache: &mut SeparationCache,
     out: &mut Manifold,
 ) {
-    let parts = |axis: &Axis| axis.separation > margin;
-    if let Some(axis) = parting.axis.and_then(|of| axis(a, b, of, PARALLEL_SINE)).filter(parts) {
-        parting.gap = axis.separation;
+    let separates = |axis: &Axis| axis.separation > margin;
+    if let Some(axis) = cache.axis.and_then(|of| axis(a, b, of, PARALLEL_SINE)).filter(separates) {
+        cache.gap = axis.separation;
         return;
     }
-    parting.axis = None;
+    cache.axis = None;
     let crossed = Crossed::new(a, b);
     let (face_a, face_b) = (crossed.best_face_of_a(), crossed.best_face_of_b());
-    if let Some(axis) = [face_a, face_b].iter().find(|axis| parts(axis)) {
-        *parting = SeparationCache::along(axis);
+    if let Some(axis) = [face_a, face_b].iter().find(|axis| separates(axis)) {
+        *cache = SeparationCache::along(axis);
         return;
     }
     let tolerance = tolerance(a.thinnest(), b.thinnest());
     let face = choose_face(face_a, face_b, tolerance, TIE_DIRECTION);
     let edges = crossed.best_edges(PARALLEL_SINE, min(margin, least_of_edges(&face, tolerance)));
-    if let Some(axis) = edges.filter(parts) {
-        *parting = SeparationCache::along(&axis);
+    if let Some(axis) = edges.filter(separates) {
+        *cache = SeparationCache::along(&axis);
         return;
     }
     push(a, b, &choose(face, edges, tolerance), margin, tolerance, out);
@@ -84,7 +84,7 @@ impl Faceted for PlacedBox {
     }
 }
 
-/// Share of the boxes' size by which rounding may change a distance between them.
+/// Upper bound of the rounding error of a distance between two boxes, as a share of their size.
 const BLUR: f32 = 1e-5;
 
 /// Closest points of two boxes; skips corners and edges that cannot be closest.
@@ -93,7 +93,7 @@ struct Closest<'a> {
     corners: [[Vec3; 8]; 2],
     /// Coordinate of each corner of A and of B along the separating direction, metres.
     heights: [[f32; 8]; 2],
-    /// Coordinates of A's furthest corner toward B and of B's toward A, metres.
+    /// Coordinates along the separating direction of A's corner nearest to B and of B's corner nearest to A, metres.
     tops: [f32; 2],
     normal: Vec3,
     /// Gap above which pairs of points are skipped, metres.
@@ -127,7 +127,7 @@ impl<'a> Closest<'a> {
     fn shortest_edge_bridge(&self, found: Option<Bridge>) -> Option<Bridge> {
         let most = found.map_or(self.most, |found| min(found.span().length() * (1.0 + BLUR), self.most));
         let most = most + self.most * BLUR;
-        // Only a few edges can be closer along the shortest direction so far.
+        // Along the direction of the shortest bridge so far, only a few edges can be closer than that bridge.
         let toward = found.map_or(self.normal, |found| normalize_or(found.span(), self.normal));
         let reach = self.corners.map(|corners| corners.map(|corner| corner.dot(toward)));
         let mut best = found;
@@ -180,9 +180,8 @@ mod tests {
         )
     }
 
-    /// Skipping edges that separate by at most `enough` does not change which direction separates best.
     #[test]
-    fn edges_below_the_given_separation_are_skipped() {
+    fn skipping_edges_that_separate_less_than_enough_keeps_the_best_axis() {
         let mut random = Random::new(41);
         let (mut found, mut left_out) = (0, 0);
         for case in 0..20_000 {
@@ -200,18 +199,18 @@ mod tests {
                 None => left_out += usize::from(some.is_none()),
             }
         }
-        assert!(found > 3_000 && left_out > 3_000, "{found}, {left_out}");
+        assert!(found > 3_000 && left_out > 3_000, "{found} best axes compared, {left_out} left out");
     }
 
-    /// Reference implementation that tries all corners and edges.
-    fn tried(a: &PlacedBox, b: &PlacedBox, normal: Vec3, margin: f32) -> Manifold {
+    /// Reference implementation: the closest points by brute force over all corners and edges.
+    fn brute_force(a: &PlacedBox, b: &PlacedBox, normal: Vec3, margin: f32) -> Manifold {
         let all = Closest::new(a, b, normal, f32::INFINITY);
         let corners: Vec<Bridge> = all.corner_bridges().collect();
         let edges = EDGES.iter().enumerate().flat_map(|(i, ends)| {
             let all = &all;
             EDGES.iter().enumerate().map(move |(j, others)| all.edge_bridge((i, *ends), (j, *others)))
         });
-        let best = corners.iter().copied().chain(edges).reduce(Bridge::shorter).expect("there are some");
+        let best = corners.iter().copied().chain(edges).reduce(Bridge::shorter).expect("boxes have corners");
         let (size, mut out) = ((a.half + b.half).length(), Manifold::default());
         push_bridges::<16>(best, corners.into_iter(), (size, normal), margin, 5e-4, &mut out);
         out
@@ -233,7 +232,7 @@ mod tests {
                 let margin = [0.02, 0.2, 1.0][random.index(3)];
                 let mut out = Manifold::default();
                 a.push_closest(&b, axis.normal, margin, 5e-4, &mut out);
-                assert_eq!(out, tried(&a, &b, axis.normal, margin), "case {case}");
+                assert_eq!(out, brute_force(&a, &b, axis.normal, margin), "case {case}");
                 pairs += 1;
                 with_points += usize::from(out.count > 0);
             }

@@ -8,27 +8,29 @@ use super::placed::{PlacedBox, PlacedCapsule, Segment, largest_axis, sign};
 use crate::boxes::segment::{Gap, Meeting, best_edge, best_face, cut, gap};
 use sinew_math::{Vec3, min};
 
-/// Sine below which a normal is replaced by that of the face: 0.03°, more than rounding and than the rim of a long box.
+/// Sine between the normal and a face's normal below which the face's normal is used: 0.03°, more than the rounding
+/// error, also at the ends of a long box.
 const FACE_SINE: f32 = 5e-4;
-/// Cosine above which a core counts as parallel to a side of the face: 1.8°.
+/// Cosine above which a core counts as parallel to an edge of the box: 1.8°.
 const ALONG_COSINE: f32 = 0.9995;
-/// Sine below which a normal counts as perpendicular to that side: 1.8°.
+/// Sine below which a normal counts as perpendicular to that edge: 1.7°.
 const ACROSS_SINE: f32 = 0.03;
-/// Sine below which a core counts as parallel to a side of the box; then the face axes suffice.
+/// Sine below which a core that has entered the box counts as parallel to an axis of the box; then the face axes
+/// suffice.
 const PARALLEL_SINE: f32 = 0.005;
 
 pub(super) fn collide(
     a: &PlacedBox,
     b: &PlacedCapsule,
     margin: f32,
-    parting: &mut SeparationCache,
+    cache: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     let core = Segment { ends: b.core.ends.map(|p| a.local_point(p)) };
-    let meeting = apart(a.half, &core).unwrap_or_else(|| pierced(a.half, &core, b.radius));
+    let meeting = closest_outside(a.half, &core).unwrap_or_else(|| shortest_way_out(a.half, &core, b.radius));
     let nearest = (meeting.on_core - meeting.on_box).dot(meeting.normal) - b.radius;
     if nearest > margin {
-        parting.gap = nearest;
+        cache.gap = nearest;
         return;
     }
     if !push_line(a.half, &core, b.radius, &meeting, margin, out) {
@@ -43,15 +45,16 @@ pub(super) fn collide(
 }
 
 /// Returns the closest points if the core is clearly outside the box.
-fn apart(half: Vec3, core: &Segment) -> Option<Meeting> {
+fn closest_outside(half: Vec3, core: &Segment) -> Option<Meeting> {
     let Gap { on_core, on_box, distance } = gap(half, core)?;
     // The direction between points closer than rounding is noise.
     let reach = half.length() + on_core.length();
     (distance > 1e-4 * reach).then(|| Meeting { normal: (on_core - on_box) / distance, on_box, on_core })
 }
 
-/// Returns the shortest way out, over the box's faces and the cross products of core and edges.
-fn pierced(half: Vec3, core: &Segment, radius: f32) -> Meeting {
+/// Returns the shortest way of the core out of the box, along the face normals and the cross products of core and
+/// edges.
+fn shortest_way_out(half: Vec3, core: &Segment, radius: f32) -> Meeting {
     let (face_gap, face) = best_face(half, core);
     // A face can give two points, so an edge must be clearly better.
     let preference = 0.05 * face_gap.abs() + 0.01 * min(min(half.x, half.y), min(half.z, radius));
@@ -61,8 +64,8 @@ fn pierced(half: Vec3, core: &Segment, radius: f32) -> Meeting {
     }
 }
 
-/// Pushes the two ends of the part of the core over the face, or along the edge, that it touches. Returns false and
-/// pushes nothing if the core touches a corner, crosses an edge, or that part is too short.
+/// Finds the part of the core over the touched face or along the touched edge, and pushes its two ends. Returns false
+/// and pushes nothing if the core touches a corner or crosses an edge, or if the part is too short.
 fn push_line(
     half: Vec3,
     core: &Segment,

@@ -9,13 +9,13 @@ pub(super) fn collide(
     a: &PlacedBox,
     b: &PlacedSphere,
     margin: f32,
-    parting: &mut SeparationCache,
+    cache: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     let (distance, normal) = box_distance(a.half, a.local_point(b.center));
     let separation = distance - b.radius;
     if separation > margin {
-        parting.gap = separation;
+        cache.gap = separation;
         return;
     }
     out.normal = a.vector(normal);

@@ -5,8 +5,8 @@ use super::manifold::{Manifold, SeparationCache};
 use super::placed::{PlacedCapsule, direction_or, sign};
 use sinew_math::{Vec3, any_orthonormal, min, normalize_or};
 
-/// Parallel cores touch along a line, whose two ends are used. Each core must be within this share of the smaller
-/// radius of the plane that contains the other core and the normal.
+/// Parallel cores touch along a line, whose two ends become contact points. This holds if each core is near the plane
+/// that contains the other core and the normal: within this share of the smaller radius.
 const SIDEWAYS_SHARE: f32 = 0.25;
 
 /// Sine above which cores count as crossing: about half a degree.
@@ -16,7 +16,7 @@ pub(super) fn collide(
     a: &PlacedCapsule,
     b: &PlacedCapsule,
     margin: f32,
-    parting: &mut SeparationCache,
+    cache: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     let (s, t) = a.core.closest_to_segment(&b.core);
@@ -26,8 +26,8 @@ pub(super) fn collide(
     let inside = |share: f32, pill: &PlacedCapsule| {
         0.0 < share && share < 1.0 && pill.core.ends[0] != pill.core.ends[1]
     };
-    // For crossing cores the common perpendicular is exact at any distance, while the direction between the two points
-    // may be rounding.
+    // For crossing cores the common perpendicular is exact at any distance, while rounding may dominate the direction
+    // between two close points.
     let (normal, separation) = if inside(s, a) && inside(t, b) && sine > LEAST_SINE {
         let gap = (pb - pa).dot(cross) / sine;
         (cross * (sign(gap) / sine), gap.abs() - a.radius - b.radius)
@@ -38,7 +38,7 @@ pub(super) fn collide(
         (normal, (pb - pa).length() - a.radius - b.radius)
     };
     if separation > margin {
-        parting.gap = separation;
+        cache.gap = separation;
         return;
     }
     out.normal = normal;
@@ -48,8 +48,8 @@ pub(super) fn collide(
     }
 }
 
-/// Pushes the two ends of the part along which the cores run side by side. Returns false and pushes nothing if there is
-/// none.
+/// Pushes the two ends of the part along which the cores run side by side. Returns false and pushes nothing if the
+/// cores have no such part.
 fn push_side_by_side(a: &PlacedCapsule, b: &PlacedCapsule, margin: f32, out: &mut Manifold) -> bool {
     // The direction uses both cores, so that their order does not matter.
     let common = a.axis + b.axis * sign(a.axis.dot(b.axis));

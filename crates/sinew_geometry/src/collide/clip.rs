@@ -14,10 +14,11 @@ pub(super) struct Corner {
     pub reference: u16,
     /// Feature of the incident shape.
     pub incident: u16,
-    /// Plane that contains the side from this corner to the next.
+    /// Edge of the incident face, or side of the reference face, on which the side from this corner to the next lies.
     side: Side,
 }
 
+/// Origin of a side of the clipped face.
 #[derive(Clone, Copy, Default, PartialEq)]
 enum Side {
     /// An edge of the incident face, by its feature.
@@ -54,7 +55,7 @@ impl<const N: usize> Polygon<N> {
 
 /// A convex face to which another face is clipped. Its sides are numbered in clipping order.
 pub(super) trait Reference {
-    /// Name of the face.
+    /// Feature name of the face.
     fn feature(&self) -> u16;
     /// Outward unit normal.
     fn normal(&self) -> Vec3;
@@ -62,8 +63,9 @@ pub(super) trait Reference {
     fn local(&self, p: Vec3) -> Vec3;
     /// Converts a point from the face's frame to the frame of the pair.
     fn point(&self, local: Vec3) -> Vec3;
+    /// Number of sides.
     fn sides(&self) -> usize;
-    /// Returns a side, in the face's frame.
+    /// Returns the line of a side, in the face's frame.
     fn side(&self, number: usize) -> Line;
     /// Name of the edge at a side.
     fn edge(&self, side: usize) -> u16;
@@ -82,8 +84,9 @@ pub(super) struct Line {
 /// A corner of an incident face: its position, its name, and the name of the edge from it to the next.
 pub(super) type Incident = (Vec3, u16, u16);
 
-/// Clips the incident face to the prism over the reference face (Sutherland & Hodgman 1974). The prism is widened by
-/// `tolerance`, so that corners on its sides keep their names under rounding.
+/// Clips the incident face to the prism over the reference face (Sutherland & Hodgman 1974). `face` is the feature name
+/// of the incident face, `corners` its corners. The prism is widened by `tolerance`, so that rounding does not change
+/// the names of corners on its sides.
 pub(super) fn clip<const N: usize>(
     reference: &impl Reference,
     face: u16,
@@ -151,7 +154,7 @@ fn cut<const N: usize>(
     *polygon = out;
 }
 
-/// Largest number of corners of a quadrilateral cut by four planes.
+/// Largest number of corners of a quadrilateral that four planes have clipped.
 pub(super) const BOX_CORNERS: usize = 8;
 
 /// A face of a box.
@@ -175,7 +178,7 @@ impl<'a> BoxFace<'a> {
         Self { of, axis, sign, center, normal, sides, along: sides.map(|side| of.axes[side]) }
     }
 
-    /// Index of the corner on the given sides of the two side axes.
+    /// Index of the corner on the positive or negative side of each of the two side axes.
     fn corner(&self, positive: [bool; 2]) -> usize {
         let [u, v] = self.sides;
         usize::from(self.sign > 0.0) << self.axis
@@ -194,7 +197,8 @@ impl<'a> BoxFace<'a> {
     }
 }
 
-/// Sides 0 and 1 are the negative and the positive side of the first side axis, 2 and 3 those of the second.
+/// Sides 0 and 1 are on the negative and the positive side of the first side axis, sides 2 and 3 on those of the
+/// second.
 impl Reference for BoxFace<'_> {
     fn feature(&self) -> u16 {
         feature::face(self.axis, self.sign)

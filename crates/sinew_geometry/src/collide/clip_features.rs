@@ -21,10 +21,11 @@ pub(super) struct Clipped {
 #[derive(Clone, Copy, Default)]
 struct Outline {
     at: Clipped,
-    /// Edge of the incident feature or of the reference face that contains the side from this corner to the next.
+    /// Side of the incident feature or of the reference face on which the side from this corner to the next lies.
     side: Side,
 }
 
+/// Origin of a side of the outline.
 #[derive(Clone, Copy, Default)]
 enum Side {
     /// A side of the incident feature, by name.
@@ -48,7 +49,7 @@ impl Cut {
 }
 
 /// Clips the incident feature to the prism over and under the face (Sutherland & Hodgman 1974). The prism is widened by
-/// `tolerance`, so that corners on its sides keep their names under rounding.
+/// `tolerance`, so that rounding does not change the names of corners on its sides.
 pub(super) fn clip(face: &Feature, incident: &Feature, tolerance: f32) -> Cut {
     let mut outline = [Outline::default(); MOST_POINTS];
     let mut count = incident.corners().len();

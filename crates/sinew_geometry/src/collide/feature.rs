@@ -7,7 +7,7 @@ use sinew_math::Vec3;
 /// Name of a whole shape, or of the only feature of its kind.
 pub(crate) const WHOLE: u16 = 0;
 
-/// Bits for the kind of a feature; the lower bits are its index.
+/// The two high bits of a name give the kind of the feature; the other bits are the feature's index.
 const VERTEX: u16 = 0x4000;
 const EDGE: u16 = 0x8000;
 const FACE: u16 = 0xC000;
@@ -38,8 +38,8 @@ pub(crate) fn half_edge(topology: Topology<'_>, side: usize) -> u16 {
     EDGE | topology.edge_of(side) as u16
 }
 
-/// Direction of an edge by its name, in the frame of its shape, of any length. `None` if the name is not that of an
-/// edge, or the shape is neither a box nor a hull.
+/// Returns the direction of the edge with a name, in the frame of its shape and not normalized. `None` if the name is
+/// not that of an edge, or the shape is neither a box nor a hull.
 fn direction(shape: &Shape, feature: u16) -> Option<Vec3> {
     let number = usize::from(feature & !FACE);
     match shape {
@@ -53,8 +53,9 @@ fn direction(shape: &Shape, feature: u16) -> Option<Vec3> {
     }
 }
 
-/// Directions of the two edges that cross at a contact point, each in the frame of its shape and of any length. `None`
-/// if the point is not a crossing of edges of boxes or hulls.
+/// Returns the directions of the two edges that cross at a contact point, each in the frame of its shape and not
+/// normalized. `feature` is the [`ManifoldPoint::feature`](super::ManifoldPoint::feature). `None` if the point is not a
+/// crossing of two edges of boxes or hulls.
 pub fn edge_directions(shapes: [&Shape; 2], feature: u32) -> Option<[Vec3; 2]> {
     let [a, b] = [feature as u16, (feature >> 16) as u16];
     Some([direction(shapes[0], a)?, direction(shapes[1], b)?])

@@ -12,33 +12,35 @@ use sinew_math::{Vec3, min};
 
 /// Least cosine between a face's normal and the direction at which the face may be in contact: about 18°.
 const FACING: f32 = 0.95;
-/// Share of the gap, and share of the thinner solid, by which edges and corners must be better than faces: faces give
-/// more points and are more stable.
+/// Share of the gap by which edges and corners must be better than a face to be preferred; see also
+/// [`PREFERENCE_OF_SIZE`]. Faces give more points and are more stable.
 const PREFERENCE: f32 = 0.05;
+/// Share of the thinner solid's half width that is added to this preference for faces.
 const PREFERENCE_OF_SIZE: f32 = 0.01;
-/// Sine below which a normal counts as that of a face.
+/// Sine between the normal and a face's normal below which the two count as equal.
 const FACE_SINE: f32 = 2e-3;
 /// Sine below which edges count as parallel and touch along a line.
 const PARALLEL_SINE: f32 = 0.05;
 /// Parallel edges touch along a line if each is near the plane that contains the other edge and the normal: within this
-/// share of the thinner solid.
+/// share of the thinner solid's half width.
 const SIDEWAYS_SHARE: f32 = 0.25;
-/// Direction that breaks ties between faces by geometry, so that the order of the solids does not decide: see `axes`.
+/// Direction that breaks ties between faces of A and B, so that the order of the solids does not decide between them:
+/// see `axes`.
 const TIE_DIRECTION: Vec3 = Vec3::new(0.331, 0.873, 0.357);
 
-/// Finds the contact of any two convex solids; direction and gap by GJK and EPA.
+/// Finds the contact of any two convex solids. GJK and EPA give the direction and the gap.
 pub(crate) fn collide<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
     margin: f32,
-    parting: &mut SeparationCache,
+    cache: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     let gap = meet(a, b);
     if gap.distance <= margin {
         manifold_of_features(a, b, &gap, margin, out);
     } else {
-        parting.gap = gap.distance;
+        cache.gap = gap.distance;
     }
 }
 
@@ -100,9 +102,9 @@ impl Of {
 }
 
 impl Pairing<'_> {
-    /// Returns the face to which the other feature is clipped, if there is one, and the distance of the solids along
-    /// its normal. The normal of the face must be near the direction, the other feature must be more than a corner, and
-    /// the gap along the normal must be as good within `slack`.
+    /// Returns the solid whose face the other feature is clipped to, and the distance of the solids along the face's
+    /// normal; `None` if no face qualifies. The face's normal must be near the gap's direction, the other feature must
+    /// be more than a corner, and the gap along the face's normal must be within `slack` of the largest gap.
     fn reference(&self, slack: f32, apart_along: impl Fn(Vec3) -> f32) -> Option<(Of, f32)> {
         let score = |of: Of| {
             let feature = self.feature(of);
@@ -142,8 +144,9 @@ impl Pairing<'_> {
         if of == Of::A { self.gap.normal } else { -self.gap.normal }
     }
 
-    /// Pushes the other feature clipped to the face; `apart` is the distance of the solids along the normal of the
-    /// face. Returns false if the solids pass beside the face, so that the points do not give their distance.
+    /// Pushes the other feature clipped to the face of solid `of`; `apart` is the distance of the solids along the
+    /// face's normal. Returns false if the solids are separated and the other feature is beside the face, so that the
+    /// points would not give their distance.
     fn push_faces(&self, of: Of, apart: f32, out: &mut Manifold) -> bool {
         let other = of.other();
         let (reference, incident) = (self.feature(of), self.feature(other));
@@ -179,7 +182,7 @@ impl Pairing<'_> {
         out.count > 0
     }
 
-    /// Pushes the two ends of the part along which two edges run side by side; returns false if there is none.
+    /// Pushes the two ends of the part along which two edges run side by side; returns false if there is no such part.
     fn push_edges(&self, out: &mut Manifold) -> bool {
         let [a, b] = self.features.each_ref().map(Feature::corners);
         let ([a0, a1], [b0, b1]) = (a, b) else { return false };

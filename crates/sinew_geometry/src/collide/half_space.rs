@@ -10,7 +10,7 @@ use crate::convex::support::{Posed, Support, narrow, wide};
 use crate::hull::{Hull, MAX_VERTICES};
 use sinew_math::{Transform, Vec3, min};
 
-/// Pushes the four corners of the face toward the plane; the deepest corner is always one of them.
+/// Pushes the four corners of the face that faces the plane; the deepest corner of the box is always one of them.
 pub(super) fn against_box(a: &Plane, b: &PlacedBox, margin: f32, out: &mut Manifold) {
     let (axis, side) = b.facing(-a.normal);
     out.normal = a.normal;
@@ -22,7 +22,7 @@ pub(super) fn against_box(a: &Plane, b: &PlacedBox, margin: f32, out: &mut Manif
     }
 }
 
-/// Pushes the corners of the face toward the plane, starting at the deepest corner or one nearly as deep.
+/// Pushes the corners of the face that faces the plane, and the lowest corner if it is not one of them.
 pub(super) fn against_hull(a: &Plane, b: &Hull, frame: &Transform, margin: f32, out: &mut Manifold) {
     let polytope = b.polytope();
     let down = frame.rotation.inverse() * -a.normal;
@@ -39,7 +39,7 @@ pub(super) fn against_capsule(a: &Plane, b: &PlacedCapsule, margin: f32, out: &m
     for (index, point) in b.core.ends.into_iter().enumerate() {
         push(a, point, b.radius, margin, end(index), out);
     }
-    // A capsule of length 0 is a ball: one point, so that it is not pushed twice.
+    // Both ends of a capsule of length 0 are the same point, which counts only once.
     if out.count == 2 && b.core.ends[0] == b.core.ends[1] {
         out.count = 1;
     }
@@ -50,7 +50,7 @@ pub(super) fn against_sphere(a: &Plane, b: &PlacedSphere, margin: f32, out: &mut
     push(a, b.center, b.radius, margin, WHOLE, out);
 }
 
-/// Pushes the corners of the feature toward the plane.
+/// Pushes the corners of the feature that faces the plane, and the lowest point if it is below them.
 pub(super) fn against_core<S: Support>(a: &Plane, b: &Posed<'_, S>, margin: f32, out: &mut Manifold) {
     const POINTS: usize = MOST_CORNERS + 1;
     let (feature, radius) = (b.feature(-a.normal), b.solid.rounding());
@@ -60,12 +60,12 @@ pub(super) fn against_core<S: Support>(a: &Plane, b: &Posed<'_, S>, margin: f32,
     push_deepest::<POINTS>(corners, lowest, ROUNDING * b.solid.reach(), margin, out);
 }
 
-/// Relative difference below which heights over the plane count as equal. The rounding of heights is a few 6e-8 of a
-/// solid's reach, and a resting solid must keep its points.
+/// Difference below which heights over the plane count as equal, as a share of the solid's reach. Heights have a
+/// rounding error of a few times 6e-8 of the reach, and rounding must not change the points of a resting solid.
 const ROUNDING: f32 = 1e-5;
 
-/// Pushes at most four of the given corners within the margin. For a tilted or round solid the `lowest` point may not
-/// be among them; it is then added. `N` is the largest number of candidates.
+/// Pushes at most four of the given corners that are within the margin. The `lowest` point of a tilted or round solid
+/// may be below all corners; then it is a candidate too. `N` is the largest number of candidates.
 fn push_deepest<const N: usize>(
     corners: impl Iterator<Item = ManifoldPoint>,
     lowest: ManifoldPoint,
@@ -91,7 +91,7 @@ fn push_deepest<const N: usize>(
     push_best(&points[..count], tolerance, out);
 }
 
-/// Returns the point between the plane and a ball; a ball of radius 0 is a corner.
+/// Returns the contact point of the plane and a ball; use radius 0 for a corner.
 fn under(a: &Plane, center: Vec3, radius: f32, feature: u16) -> ManifoldPoint {
     let separation = a.height(center) - radius;
     let position = center - a.normal * (radius + 0.5 * separation);

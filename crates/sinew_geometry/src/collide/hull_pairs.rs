@@ -9,14 +9,14 @@ use crate::hull::{BoxPolytope, Hull, Room};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3};
 
-/// Finds the contact of a hull and a shape of the same or a later rank.
+/// Finds the contact of a hull and a shape of equal or higher [rank](super::rank).
 pub(super) fn collide(
     hull: &Hull,
     pair_from_hull: &Transform,
     other: &Shape,
     pair_from_other: &Transform,
     margin: f32,
-    parting: &mut SeparationCache,
+    cache: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     let frame = pair_from_hull.inverse() * *pair_from_other;
@@ -26,24 +26,24 @@ pub(super) fn collide(
         Shape::Hull(ref other) => {
             let mut room = Room::EMPTY;
             let other = other.polytope().seen_from(&frame, &mut room);
-            polytope::collide(&polytope, &other, margin, tie, parting, out);
+            polytope::collide(&polytope, &other, margin, tie, cache, out);
         }
         Shape::Box { half_extents } => {
             let other = BoxPolytope::new(&PlacedBox::new(half_extents, &frame));
-            polytope::collide(&polytope, &other.polytope(), margin, tie, parting, out);
+            polytope::collide(&polytope, &other.polytope(), margin, tie, cache, out);
         }
         Shape::Capsule { half_height, radius } => {
             let pill = PlacedCapsule::new(half_height, radius, &frame);
-            hull_round::against_capsule(&polytope, &pill.core, radius, margin, parting, out);
+            hull_round::against_capsule(&polytope, &pill.core, radius, margin, cache, out);
         }
         Shape::Sphere { radius } => {
-            hull_round::against_sphere(&polytope, frame.translation, radius, margin, parting, out);
+            hull_round::against_sphere(&polytope, frame.translation, radius, margin, cache, out);
         }
         _ => {
             let core = Core::Hull(hull);
             let a = Posed::new(&core, &Transform::IDENTITY, Vec3::ZERO);
             if let Some(core) = Core::of(other) {
-                features::collide(&a, &Posed::new(&core, &frame, Vec3::ZERO), margin, parting, out);
+                features::collide(&a, &Posed::new(&core, &frame, Vec3::ZERO), margin, cache, out);
             }
         }
     }

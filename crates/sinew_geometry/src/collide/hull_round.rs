@@ -10,11 +10,12 @@ use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{Plane, Polytope};
 use sinew_math::{Vec3, max, min};
 
-/// Sine below which a normal is replaced by that of the face: 0.03°, more than rounding.
+/// Sine between the normal and a face's normal below which the face's normal is used: 0.03°, more than the rounding
+/// error.
 const FACE_SINE: f32 = 5e-4;
-/// Share of a core's length by which rounding moves the ends of a part of it.
+/// Upper bound of the rounding error of the parameters that bound a part of the core.
 const ROUNDING: f32 = 1e-3;
-/// Sine below which a core counts as parallel to an edge: 1.8°.
+/// Sine below which a core counts as parallel to an edge: 1.7°.
 const ALONG_SINE: f32 = 0.03;
 
 pub(super) fn against_sphere(
@@ -22,13 +23,13 @@ pub(super) fn against_sphere(
     center: Vec3,
     radius: f32,
     margin: f32,
-    parting: &mut SeparationCache,
+    cache: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     let (distance, normal) = hull.distance(center);
     let separation = distance - radius;
     if separation > margin {
-        parting.gap = separation;
+        cache.gap = separation;
         return;
     }
     out.normal = normal;
@@ -52,13 +53,13 @@ pub(super) fn against_capsule(
     core: &Segment,
     radius: f32,
     margin: f32,
-    parting: &mut SeparationCache,
+    cache: &mut SeparationCache,
     out: &mut Manifold,
 ) {
-    let meeting = apart(hull, core).unwrap_or_else(|| pierced(hull, core, radius));
+    let meeting = closest_outside(hull, core).unwrap_or_else(|| shortest_way_out(hull, core, radius));
     let nearest = meeting.distance - radius;
     if nearest > margin {
-        parting.gap = nearest;
+        cache.gap = nearest;
         return;
     }
     if !push_line(hull, core, radius, &meeting, margin, out) {
@@ -68,8 +69,9 @@ pub(super) fn against_capsule(
     }
 }
 
-/// Returns the closest points if the core is clearly outside: one is an end of the core, or on an edge of the hull.
-fn apart(hull: &Polytope<'_>, core: &Segment) -> Option<Meeting> {
+/// Returns the closest points if the core is clearly outside the hull. The point on the core is one of its ends, or the
+/// point on the hull is on an edge.
+fn closest_outside(hull: &Polytope<'_>, core: &Segment) -> Option<Meeting> {
     let [from, to] = core.ends;
     let enters = |p: Vec3, way: Vec3| hull.enter(p, way).is_some_and(|(fraction, _)| fraction <= 1.0);
     if core.ends.iter().any(|&p| hull.highest_plane(p).0 <= 0.0) || enters(from, to - from) {
@@ -102,8 +104,9 @@ fn apart(hull: &Polytope<'_>, core: &Segment) -> Option<Meeting> {
     })
 }
 
-/// Returns the shortest way out, over the hull's faces and the cross products of core and edges.
-fn pierced(hull: &Polytope<'_>, core: &Segment, radius: f32) -> Meeting {
+/// Returns the shortest way of the core out of the hull, along the face normals and the cross products of core and
+/// edges.
+fn shortest_way_out(hull: &Polytope<'_>, core: &Segment, radius: f32) -> Meeting {
     let lower = |plane: &Plane| min(plane.height(core.ends[0]), plane.height(core.ends[1]));
     let mut face = Axis { normal: Vec3::Y, separation: f32::NEG_INFINITY, of: AxisOf::FaceA(0) };
     for (k, plane) in hull.planes.iter().enumerate() {
@@ -123,7 +126,8 @@ fn pierced(hull: &Polytope<'_>, core: &Segment, radius: f32) -> Meeting {
     Meeting { normal: axis.normal, on_core, distance: axis.separation, edge }
 }
 
-/// Returns the best cross product of core and edge. The arc of the core is the full circle across it.
+/// Returns the cross product of the core and an edge with the largest gap. On the Gauss map the core is the great
+/// circle perpendicular to it, so only edges whose arcs cross that circle are tested.
 fn best_edge(hull: &Polytope<'_>, core: &Segment) -> Option<Axis> {
     let along = core.ends[1] - core.ends[0];
     let mut best: Option<Axis> = None;
@@ -148,8 +152,8 @@ fn best_edge(hull: &Polytope<'_>, core: &Segment) -> Option<Axis> {
     best
 }
 
-/// Pushes the two ends of the part of the core over the face, or along the edge, that it touches. Returns false and
-/// pushes nothing if the core touches a corner, crosses an edge, or that part is too short.
+/// Finds the part of the core over the touched face or along the touched edge, and pushes its two ends. Returns false
+/// and pushes nothing if the core touches a corner or crosses an edge, or if the part is too short.
 fn push_line(
     hull: &Polytope<'_>,
     core: &Segment,
@@ -187,8 +191,8 @@ fn push_line(
     line.push_ends(|p| p.dot(normal) - height, margin, out)
 }
 
-/// Extends the part of the core over a face to include its closest point, unless the part is empty. If two faces are
-/// nearly parallel, the other face may be below that point.
+/// Extends the part of the core over a face to include the point `nearest`, unless the part is empty. If two faces are
+/// nearly parallel, the core's closest point may be over the other face.
 fn reach(core: &Segment, nearest: Vec3, stretch: &mut (f32, f32)) {
     let along = core.ends[1] - core.ends[0];
     let place = (nearest - core.ends[0]).dot(along) / along.length_squared();
@@ -203,7 +207,8 @@ fn runs_along(edge: &Segment, along: Vec3) -> bool {
     side.cross(along).length() <= ALONG_SINE * (side.length() * along.length())
 }
 
-/// Clips `stretch` of the core to the inner side of the plane through `at`, across `outward` (of any length).
+/// Clips `stretch`, a range of the core's parameter, to the inner side of the plane through `at` with the normal
+/// `outward` (of any length).
 fn cut(core: &Segment, outward: Vec3, at: Vec3, stretch: &mut (f32, f32)) {
     let [d0, d1] = core.ends.map(|p| (p - at).dot(outward));
     if d0 > 0.0 && d1 > 0.0 {

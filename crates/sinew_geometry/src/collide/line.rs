@@ -18,9 +18,9 @@ pub(super) struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// Pushes the two ends of the part. A is the solid under the capsule; `height` returns the height of a point over
-    /// A. Returns false and pushes nothing if the part is too short for two points, or neither end is within the
-    /// margin.
+    /// Pushes the two ends of the part. A is the solid that the capsule touches; `height` returns the height of a point
+    /// over A's face or edge. Returns false if the part is too short for two points, or neither end is within the
+    /// margin; no points are pushed then.
     pub fn push_ends(&self, height: impl Fn(Vec3) -> f32, margin: f32, out: &mut Manifold) -> bool {
         let &Self { core, radius, stretch: (from, to), normal, name } = self;
         let length = (core.ends[1] - core.ends[0]).length();

@@ -13,8 +13,8 @@ pub struct ManifoldPoint {
     pub position: Vec3,
     /// Gap along the normal, metres; negative if the surfaces overlap.
     pub separation: f32,
-    /// Features in contact: A's in the low 16 bits, B's in the high ones. The number does not change across steps while
-    /// the same features touch; swapped shapes exchange the halves (`feature.rotate_left(16)`).
+    /// Feature id: A's feature in the low 16 bits, B's in the high 16 bits. The id does not change across steps while
+    /// the same features touch. Swapping the shapes exchanges the halves (`feature.rotate_left(16)`).
     pub feature: u32,
 }
 
@@ -43,7 +43,7 @@ impl Manifold {
         if self.count > 0 { sum / self.count as f32 } else { sum }
     }
 
-    /// Appends a point midway between the surfaces.
+    /// Appends a point; `position` is midway between the surfaces.
     pub(super) fn push(&mut self, position: Vec3, separation: f32, feature: u32) {
         self.points[self.count] = ManifoldPoint { position, separation, feature };
         self.count += 1;
@@ -81,13 +81,13 @@ impl Manifold {
     }
 }
 
-/// Cache of a pair of shapes between calls. It never changes the result.
+/// Cache that a caller keeps for a pair of shapes between calls. Its contents never change the resulting manifold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeparationCache {
     /// Axis that separated two polytopes in the last call. It is tested first, since separated pairs mostly stay
     /// separated along the same axis.
     pub axis: Option<AxisOf>,
-    /// Lower bound of the gap between the shapes, metres. Set if no points are found.
+    /// Lower bound of the gap between the shapes, metres. Valid after a call that found no points.
     pub gap: f32,
 }
 
@@ -99,7 +99,7 @@ impl Default for SeparationCache {
 }
 
 impl SeparationCache {
-    /// Returns the cache of shapes that an axis separates.
+    /// Returns the cache for two shapes that this axis separates.
     pub(super) fn along(axis: &Axis) -> Self {
         Self { axis: Some(axis.of), gap: axis.separation }
     }

@@ -1,8 +1,8 @@
 //! Narrow phase: the contact manifold of two placed shapes.
 //!
-//! There is one file per pair of shapes, each written for one order of the pair; [`collide`] sorts the pair and flips
+//! Pairs of shapes have separate files, each written for one order of the pair; [`collide`] sorts the pair and flips
 //! the result if needed. Positions are computed relative to one of the shapes, so that a contact far from the world's
-//! origin is as precise as one near it.
+//! origin is as precise as one near the origin.
 
 mod arcs;
 mod axes;
@@ -57,36 +57,37 @@ pub fn collide(
     collide_again((a, world_from_a), (b, world_from_b), margin, &mut SeparationCache::default(), out);
 }
 
-/// Share of the distance between two frames by which rounding may overestimate a gap.
+/// Upper bound of the rounding error of a gap, as a share of the distance between the two frames.
 const ROUNDING: f32 = 4e-6;
 
-/// Like [`collide`], with a cache from an earlier call.
+/// Like [`collide`], with a cache that the caller keeps for the pair between calls. A new pair starts with the default
+/// cache.
 pub fn collide_again(
     (a, world_from_a): (&Shape, &Transform),
     (b, world_from_b): (&Shape, &Transform),
     margin: f32,
-    parting: &mut SeparationCache,
+    cache: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     *out = Manifold::default();
-    parting.gap = f32::NEG_INFINITY;
+    cache.gap = f32::NEG_INFINITY;
     if !(world_from_a.is_finite() && world_from_b.is_finite()) {
         return;
     }
     let balls = [a, b].map(as_ball);
     let (a, b) = (balls[0].as_ref().unwrap_or(a), balls[1].as_ref().unwrap_or(b));
     if rank(a) <= rank(b) {
-        collide_ranked((a, world_from_a), (b, world_from_b), margin, parting, out);
+        collide_ranked((a, world_from_a), (b, world_from_b), margin, cache, out);
     } else {
-        collide_ranked((b, world_from_b), (a, world_from_a), margin, parting, out);
+        collide_ranked((b, world_from_b), (a, world_from_a), margin, cache, out);
         out.flip();
     }
-    parting.gap -= ROUNDING * (world_from_b.translation - world_from_a.translation).length();
+    cache.gap -= ROUNDING * (world_from_b.translation - world_from_a.translation).length();
 }
 
-/// Calls `visit` with the contacts of two placed shapes, in the form of [`collide`]. A mesh or height field and a
-/// convex shape may have several contacts, each with its own normal. Two surfaces, or a surface and a half-space, have
-/// none.
+/// Calls `visit` with each manifold of two placed shapes; arguments and results are as in [`collide`]. A mesh or height
+/// field and a convex shape may have several manifolds, each with its own normal. Two surfaces, or a surface and a
+/// half-space, have none.
 pub fn collide_all(
     a: &Shape,
     world_from_a: &Transform,
@@ -108,8 +109,8 @@ pub fn collide_all(
     patch.manifolds().iter().for_each(visit);
 }
 
-/// Finds the contacts of two placed shapes of which one is a surface: normals point from `a` to `b`. `ground` has the
-/// shapes beside the surface.
+/// Fills `out` with the contacts of two placed shapes, one of which must be a surface; normals point from `a` to `b`.
+/// `ground` returns the visible normals where other shapes continue the surface: see [`Ground`].
 pub fn collide_pair(
     (a, world_from_a): (&Shape, &Transform),
     (b, world_from_b): (&Shape, &Transform),
@@ -138,7 +139,8 @@ fn as_ball(shape: &Shape) -> Option<Shape> {
     }
 }
 
-/// Rank by which the shapes of a pair are sorted. Pairs with separate files have the order of the files' names.
+/// Returns the rank of a shape. [`collide`] sorts the shapes of a pair by rank; file names such as `box_sphere` have
+/// the same order.
 fn rank(shape: &Shape) -> u32 {
     match shape {
         Shape::HalfSpace => 0,
@@ -179,7 +181,7 @@ fn collide_ranked(
     (a, wa): (&Shape, &Transform),
     (b, wb): (&Shape, &Transform),
     margin: f32,
-    parting: &mut SeparationCache,
+    cache: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     // B is never the half-space, whose origin may be far away.
@@ -189,24 +191,24 @@ fn collide_ranked(
     match (a, b) {
         (Shape::HalfSpace, other) => {
             let plane = Plane::new(&wa);
-            parting.gap = plane.height(Vec3::ZERO) - other.bounding_radius();
+            cache.gap = plane.height(Vec3::ZERO) - other.bounding_radius();
             collide_half_space(&plane, other, &wb, margin, out);
         }
-        (Shape::Hull(hull), _) => hull_pairs::collide(hull, &wa, b, &wb, margin, parting, out),
+        (Shape::Hull(hull), _) => hull_pairs::collide(hull, &wa, b, &wb, margin, cache, out),
         (&Shape::Box { half_extents: half_a }, &Shape::Box { half_extents: half_b }) => {
             let (a, b) = (PlacedBox::new(half_a, &wa), PlacedBox::new(half_b, &wb));
-            box_box::collide(&a, &b, margin, parting, out);
+            box_box::collide(&a, &b, margin, cache, out);
         }
         (&Shape::Box { half_extents }, &Shape::Capsule { half_height, radius }) => {
             let pill = PlacedCapsule::new(half_height, radius, &wb);
-            box_capsule::collide(&PlacedBox::new(half_extents, &wa), &pill, margin, parting, out);
+            box_capsule::collide(&PlacedBox::new(half_extents, &wa), &pill, margin, cache, out);
         }
         (&Shape::Box { half_extents }, &Shape::Sphere { radius }) => {
             box_sphere::collide(
                 &PlacedBox::new(half_extents, &wa),
                 &PlacedSphere::new(radius, &wb),
                 margin,
-                parting,
+                cache,
                 out,
             );
         }
@@ -216,16 +218,16 @@ fn collide_ranked(
         ) => {
             let (a, b) =
                 (PlacedCapsule::new(height_a, radius_a, &wa), PlacedCapsule::new(height_b, radius_b, &wb));
-            capsule_capsule::collide(&a, &b, margin, parting, out);
+            capsule_capsule::collide(&a, &b, margin, cache, out);
         }
         (&Shape::Capsule { half_height, radius }, &Shape::Sphere { radius: radius_b }) => {
             let pill = PlacedCapsule::new(half_height, radius, &wa);
-            capsule_sphere::collide(&pill, &PlacedSphere::new(radius_b, &wb), margin, parting, out);
+            capsule_sphere::collide(&pill, &PlacedSphere::new(radius_b, &wb), margin, cache, out);
         }
         (&Shape::Sphere { radius }, &Shape::Sphere { radius: radius_b }) => {
             // A ball is a capsule of length 0.
             let pill = PlacedCapsule::new(0.0, radius, &wa);
-            capsule_sphere::collide(&pill, &PlacedSphere::new(radius_b, &wb), margin, parting, out);
+            capsule_sphere::collide(&pill, &PlacedSphere::new(radius_b, &wb), margin, cache, out);
         }
         (round, &Shape::Sphere { radius }) => {
             round_sphere::collide(round, &wa, &PlacedSphere::new(radius, &wb), margin, out);
@@ -234,7 +236,7 @@ fn collide_ranked(
         (a, b) => {
             if let (Some(a), Some(b)) = (Core::of(a), Core::of(b)) {
                 let (a, b) = (Posed::new(&a, &wa, Vec3::ZERO), Posed::new(&b, &wb, Vec3::ZERO));
-                features::collide(&a, &b, margin, parting, out);
+                features::collide(&a, &b, margin, cache, out);
             }
         }
     }
@@ -259,20 +261,20 @@ mod tests {
         Shape::Hull(Arc::new(Hull::new(&points).expect("points in general position")))
     }
 
-    /// Results of pairs that drift past each other do not depend on the cached axis.
+    /// Moves random pairs past each other, with the cache of the last call and with random axes in the cache.
     #[test]
     fn cached_axes_do_not_change_results() {
         let mut random = Random::new(71);
-        let (mut same, mut parted, mut touching) = (0, 0, 0);
+        let (mut same, mut separated, mut touching) = (0, 0, 0);
         for _ in 0..400 {
             let (a, b) = (solid(&mut random), solid(&mut random));
             let mut frame = Transform::new(random.direction(), random.rotation());
             let (drift, turn) = (random.in_cube() * 0.05, random.in_cube() * 0.05);
-            let mut parting = SeparationCache::default();
+            let mut cache = SeparationCache::default();
             for _ in 0..20 {
-                let before = parting.axis;
+                let before = cache.axis;
                 let mut found = Manifold::default();
-                collide_again((&a, &Transform::IDENTITY), (&b, &frame), 0.02, &mut parting, &mut found);
+                collide_again((&a, &Transform::IDENTITY), (&b, &frame), 0.02, &mut cache, &mut found);
                 let any = |random: &mut Random| random.index(70);
                 let axis = Some(match random.index(3) {
                     0 => AxisOf::FaceA(any(&mut random)),
@@ -285,8 +287,8 @@ mod tests {
                 let mut fresh = Manifold::default();
                 collide(&a, &Transform::IDENTITY, &b, &frame, 0.02, &mut fresh);
                 assert_eq!((found, again), (fresh, fresh));
-                parted += u32::from(parting.axis.is_some());
-                same += u32::from(parting.axis.is_some() && before == parting.axis);
+                separated += u32::from(cache.axis.is_some());
+                same += u32::from(cache.axis.is_some() && before == cache.axis);
                 touching += u32::from(fresh.count > 0);
                 frame = Transform::new(
                     frame.translation + drift,
@@ -295,8 +297,8 @@ mod tests {
             }
         }
         assert!(
-            parted > 1_000 && touching > 1_000 && same * 10 > parted * 7,
-            "{same} equal, {parted} separated, {touching} touching pairs"
+            separated > 1_000 && touching > 1_000 && same * 10 > separated * 7,
+            "{same} equal, {separated} separated, {touching} touching pairs"
         );
     }
 }

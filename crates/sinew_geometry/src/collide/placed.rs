@@ -1,4 +1,4 @@
-//! Shapes placed in the common frame of a pair, and functions that several pairs share.
+//! Shapes placed in the common frame of a pair.
 
 pub(crate) use crate::boxes::placed::{PlacedBox, largest_axis, sign};
 pub(crate) use crate::boxes::segment::Segment;
@@ -36,7 +36,7 @@ impl PlacedSphere {
     }
 }
 
-/// Capsule: a core segment and a radius.
+/// A capsule placed in the frame of the pair: a core segment and a radius.
 pub(crate) struct PlacedCapsule {
     pub core: Segment,
     /// Unit direction of the core, defined even if the core is a point.
@@ -53,8 +53,8 @@ impl PlacedCapsule {
     }
 }
 
-/// Returns the unit direction of the offset between two cores whose radii add up to `radii`, or `fallback` if the cores
-/// touch: then the offset is rounding.
+/// Returns the unit direction of the offset between two cores. `radii` is the sum of their radii. Returns `fallback` if
+/// the offset is so short that rounding dominates its direction.
 pub(crate) fn direction_or(offset: Vec3, radii: f32, fallback: Vec3) -> Vec3 {
     let length = offset.length();
     if length > 1e-3 * radii { offset / length } else { fallback }

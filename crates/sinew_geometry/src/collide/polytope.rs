@@ -16,38 +16,37 @@ use sinew_math::{Vec3, max, min};
 
 /// Largest number of corners of two hull faces clipped to each other, except for slivers.
 const FACE_CORNERS: usize = MAX_VERTICES;
-/// Largest number of parallel edges and corners that are as close as the closest.
+/// Largest number of bridges considered for a contact: corners and edges that are about as close as the closest pair.
 const CLOSEST: usize = 16;
 
-/// Finds the contact of two polytopes. `tie` is a direction that breaks ties between faces of A and B; it must not
-/// change when the shapes are swapped.
+/// Finds the contact of two polytopes. `tie` is [`TIE_DIRECTION`](super::axes::TIE_DIRECTION) in their common frame.
 pub(super) fn collide(
     a: &Polytope<'_>,
     b: &Polytope<'_>,
     margin: f32,
     tie: Vec3,
-    parting: &mut SeparationCache,
+    cache: &mut SeparationCache,
     out: &mut Manifold,
 ) {
-    let parts = |axis: &Axis| axis.separation > margin;
-    if let Some(axis) = parting.axis.and_then(|of| axis(a, b, of)).filter(parts) {
-        parting.gap = axis.separation;
+    let separates = |axis: &Axis| axis.separation > margin;
+    if let Some(axis) = cache.axis.and_then(|of| axis(a, b, of)).filter(separates) {
+        cache.gap = axis.separation;
         return;
     }
-    parting.axis = None;
+    cache.axis = None;
     let face_a = best_face(a, b, margin, AxisOf::FaceA);
-    if parts(&face_a) {
-        *parting = SeparationCache::along(&face_a);
+    if separates(&face_a) {
+        *cache = SeparationCache::along(&face_a);
         return;
     }
     let face_b = best_face(b, a, margin, AxisOf::FaceB);
-    if parts(&face_b) {
-        *parting = SeparationCache::along(&face_b);
+    if separates(&face_b) {
+        *cache = SeparationCache::along(&face_b);
         return;
     }
     let edges = best_edges(a, b);
-    if let Some(axis) = edges.filter(parts) {
-        *parting = SeparationCache::along(&axis);
+    if let Some(axis) = edges.filter(separates) {
+        *cache = SeparationCache::along(&axis);
         return;
     }
     let tolerance = tolerance(a.thickness, b.thickness);
@@ -70,22 +69,22 @@ fn push_crossing(
     out: &mut Manifold,
 ) {
     let AxisOf::Edges(i, j) = edges.of else { return };
-    let told = out.points().iter().fold(f32::INFINITY, |least, point| min(point.separation, least));
-    if face.separation > 0.0 || told <= face.separation + tolerance + 0.05 * face.separation.abs() {
+    let nearest = out.points().iter().fold(f32::INFINITY, |least, point| min(point.separation, least));
+    if face.separation > 0.0 || nearest <= face.separation + tolerance + 0.05 * face.separation.abs() {
         return;
     }
     let (edge_a, edge_b) = (a.edge(i), b.edge(j));
     let (s, t) = edge_a.closest_to_segment(&edge_b);
     let (on_a, on_b) = (edge_a.at(s), edge_b.at(t));
     let separation = (on_b - on_a).dot(out.normal);
-    if separation < told - tolerance {
+    if separation < nearest - tolerance {
         let feature = pair(feature::half_edge(a.topology, i), feature::half_edge(b.topology, j));
         out.push_or_replace_shallowest((on_a + on_b) * 0.5, separation, feature);
     }
 }
 
-/// Returns the axis with this source, with the bits of [`best_face`] and [`best_edges`]; `None` if the source is not
-/// valid.
+/// Returns the separating axis of the given features, with the same bits as [`best_face`] and [`best_edges`] compute.
+/// `None` if an index is out of range, or the Minkowski difference has no face for the pair of edges.
 fn axis(a: &Polytope<'_>, b: &Polytope<'_>, of: AxisOf) -> Option<Axis> {
     match of {
         AxisOf::FaceA(k) => a.planes.get(k).map(|plane| face(plane, b, of)),
@@ -101,8 +100,8 @@ fn face(plane: &Plane, other: &Polytope<'_>, of: AxisOf) -> Axis {
     Axis { normal: plane.normal, separation: -plane.offset - other.reach(-plane.normal), of }
 }
 
-/// Returns the face of `of` that separates best, with its outward normal, or the first that separates by more than
-/// `enough`.
+/// Returns the face of the polytope `of` with the largest gap, with the face's outward normal; the first face whose gap
+/// exceeds `enough`, if there is one.
 fn best_face(of: &Polytope<'_>, other: &Polytope<'_>, enough: f32, name: fn(usize) -> AxisOf) -> Axis {
     let mut best = Axis { normal: Vec3::Y, separation: f32::NEG_INFINITY, of: name(0) };
     for (number, plane) in of.planes.iter().enumerate() {
@@ -117,7 +116,7 @@ fn best_face(of: &Polytope<'_>, other: &Polytope<'_>, enough: f32, name: fn(usiz
     best
 }
 
-/// Returns the best cross product of edges; among equals the first by the edges' indices.
+/// Returns the cross product of two edges with the largest gap; among equal gaps, the pair with the lowest indices.
 fn best_edges(a: &Polytope<'_>, b: &Polytope<'_>) -> Option<Axis> {
     let mut best: Option<Axis> = None;
     for_each_crossing(a, b, |arc, other| {

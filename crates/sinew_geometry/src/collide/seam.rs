@@ -1,20 +1,21 @@
-//! Seams: the visible faces of solids that abut. A floor of boxes has no inner edges, although each box has edges:
-//! where two boxes meet in a plane, each hides the side of the other.
+//! Seams: places where solids abut, and which of their faces are visible there. In a floor of boxes, each box hides the
+//! side of its neighbour, so a shape that slides over the floor must not touch those sides.
 
 use crate::boxes::Aabb;
 use crate::shape::Shape;
 use crate::triangles::{Surface, Triangle, closest_on_triangle};
 use sinew_math::{Transform, Vec3, max, normalize_or};
 
-/// Largest number of faces of a solid around a point. If more faces meet, the result is unknown.
+/// Largest number of faces of a solid around a point. If more faces meet there, [`Faces::around`] returns `None`.
 const MOST: usize = 8;
 /// Least cosine between the normals of faces that are merged.
 const SAME: f32 = 0.999;
-/// Sine up to which a direction out of a solid counts as along its surface.
+/// Sine of the angle out of a face up to which a direction counts as along the face.
 const ALONG: f32 = 0.03;
-/// Rounding error of a direction that is in the plane of a face.
+/// Tolerance for rounding: sine of the angle out of a face up to which a direction counts as not leaving the solid, and
+/// least length of a sum of normals.
 const FLAT: f32 = 1e-3;
-/// Least cosine between a face's normal and the queried normal.
+/// Least cosine between the result of [`Faces::shown`] and the queried normal.
 const AVERSE: f32 = -0.3;
 
 /// Faces of a solid, or of a surface, around a point.
@@ -30,8 +31,8 @@ pub struct Faces {
 }
 
 impl Faces {
-    /// Returns the faces within `reach` (metres) of a point in the world; no faces if the point is deeper inside.
-    /// `None` if the point is further outside, or the shape has no flat faces.
+    /// Returns the faces within `reach` (metres) of a point in the world; an empty set if the point is deeper inside.
+    /// `None` if the point is further outside, if more than eight faces are near, or if the shape has no flat faces.
     pub fn around(shape: &Shape, world_from_shape: &Transform, point: Vec3, reach: f32) -> Option<Self> {
         let mut faces = Self { normals: [Vec3::ZERO; MOST], heights: [0.0; MOST], count: 0, hidden: 0 };
         let p = world_from_shape.inverse_point(point);
@@ -58,7 +59,8 @@ impl Faces {
         self.count
     }
 
-    /// Adds a face if it is near; returns false if the point is further outside, or there is no room.
+    /// Adds a face if the point is within `reach` of its plane. Returns false if the point is further outside, or if
+    /// there is no room for the face.
     fn take(&mut self, normal: Vec3, height: f32, reach: f32) -> bool {
         if height > reach {
             return false;
@@ -73,8 +75,8 @@ impl Faces {
         true
     }
 
-    /// Adds the triangles around a point, and the sides at which the surface ends or bends down there. Returns true if
-    /// there are any and there is room.
+    /// Adds the triangles around a point, and a vertical side for each edge there at which the surface ends or bends
+    /// down. Returns true if there are triangles and all faces fit.
     fn take_surface(&mut self, surface: &Surface<'_>, p: Vec3, reach: f32) -> bool {
         let mut fits = true;
         surface.overlapping(&Aabb::reaching(p, Vec3::splat(reach)), |triangle| {
@@ -102,7 +104,8 @@ impl Faces {
         is_known || self.take(normal, height, reach)
     }
 
-    /// Hides the faces that are behind another solid around the point: every way along them leads into that solid.
+    /// Marks the faces that another solid hides around the point. A face is hidden if every direction along it leads
+    /// into the other solid.
     pub fn hide_behind(&mut self, other: &Self) {
         for face in 0..self.count {
             if self.is_behind(face, other) {
@@ -142,8 +145,9 @@ impl Faces {
         self.hidden != 0
     }
 
-    /// Returns the normal nearest to this one that the visible faces span, and the height of the point over the
-    /// supporting plane with that normal, metres. `None` if all faces are hidden, or none faces that direction.
+    /// Returns the unit normal nearest to `normal` among the non-negative combinations of the visible faces' normals,
+    /// and the height of the point over the supporting plane with that normal, metres. `None` if all faces are hidden,
+    /// or if the nearest normal points away from `normal`.
     pub fn shown(&self, normal: Vec3) -> Option<(Vec3, f32)> {
         let shown = |face: &usize| self.hidden >> face & 1 == 0;
         let mut best: Option<(f32, Vec3, f32)> = None;
@@ -190,9 +194,8 @@ mod tests {
         Shape::cuboid(Vec3::splat(0.5))
     }
 
-    /// Two boxes side by side at random poses hide their common side, but not the protruding part of the higher box.
     #[test]
-    fn abutting_shape_hides_only_the_common_side() {
+    fn abutting_box_hides_only_the_common_side() {
         let mut random = Random::new(5);
         for case in 0..200 {
             let frame = Transform::new(random.in_cube() * 5.0, random.rotation());
@@ -227,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn deep_shapes_have_no_visible_side_and_coincident_ones_have_all() {
+    fn enclosed_box_shows_no_face_and_coincident_box_shows_all() {
         let at = Transform::new(Vec3::ZERO, Rotation::from_axis_angle(Vec3::Z, 0.3));
         let edge = at.point(Vec3::new(0.5, 0.5, 0.0));
         let faces = || Faces::around(&cube(), &at, edge, 0.004).expect("a face is near the point");

@@ -16,20 +16,19 @@ pub struct ShapeHit {
     pub normal: Vec3,
 }
 
-/// Gap, as a share of the smaller shape's size, that counts as touching. [`CLOSE_STEP`], a share of the motion, is
-/// added.
+/// Gap that counts as touching, as a share of the smaller shape's size; [`CLOSE_STEP`] of the motion is added to it.
 const CLOSE: f32 = 1e-5;
 const CLOSE_STEP: f32 = 1e-7;
 /// Largest number of steps of a cast. They are Newton steps: only motions that graze a round shape need more than a
 /// few.
 const MOST_STEPS: usize = 64;
 
-/// Moves `a` by `motion` (metres) and returns its first touch of `b`; `None` if there is none, or a number is not
-/// finite. `a` may not be a half-space or mesh.
+/// Moves `a` by `motion` (metres) and returns its first touch of `b`. Returns `None` if they do not touch, or if a
+/// number is not finite. `a` must not be a half-space, mesh or height field.
 ///
 /// Shapes that overlap or touch at the start hit at fraction 0: the normal is the shortest way of A out of B, and the
-/// point is midway in the overlap. This holds for every pair of shapes. A later hit is reported when the gap is
-/// below 1e-5 of the smaller shape; if the gap stops closing before, there is no hit.
+/// point is in the middle of the overlap. A later hit is reported where the gap falls below 1e-5 of the smaller shape.
+/// If the gap stops closing before that, the result is `None`.
 pub fn cast_shape(
     a: &Shape,
     world_from_a: &Transform,

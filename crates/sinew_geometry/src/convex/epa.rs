@@ -1,6 +1,6 @@
-//! Depth of two overlapping cores: the face of their Minkowski difference that is closest to the origin, by a polytope
-//! that expands toward it (van den Bergen, "Proximity queries and penetration depth computation on 3D game objects",
-//! GDC 2001).
+//! Depth of two overlapping cores: the distance from the origin to the surface of their Minkowski difference. A
+//! polytope expands toward the closest face of that surface (van den Bergen, "Proximity queries and penetration depth
+//! computation on 3D game objects", GDC 2001).
 
 use super::gjk::{self, Bridge, Cores, Simplex, Vertex, support};
 use super::support::{Posed, Support};
@@ -22,8 +22,8 @@ const MOST_REFINEMENTS: usize = 32;
 /// Largest number of restart directions of a full polytope, at least 25° from each other.
 const MOST_STARTS: usize = 8;
 const SAME_START: f64 = 0.9;
-/// Distance beyond contact, as a share of the sizes, by which cores are moved apart to find a better direction: it
-/// makes the gap exceed rounding.
+/// Gap to which cores are moved apart to find a better direction, as a share of the sizes. It is large enough that
+/// rounding does not dominate the gap.
 const BEYOND: f64 = 0.05;
 /// Largest number of doublings of each change of direction.
 const MOST_DOUBLINGS: u32 = 24;
@@ -75,7 +75,7 @@ pub(super) fn deepest<A: Support, B: Support>(
     }
     let best = best.unwrap_or_else(|| touching(simplex, DVec3::Y));
     if best.distance > -2.0 * gjk::TOUCH * size {
-        // The cores touch: the points that showed this are as close as possible.
+        // The cores touch: the closest points that GJK found are the contact.
         let [on_a, on_b] = simplex.touching_ends();
         return Bridge { on_a, on_b, ..best };
     }
@@ -97,10 +97,10 @@ pub(super) fn deepest<A: Support, B: Support>(
     best
 }
 
-/// Improves the best direction of a full polytope if the cores are round. B is moved out along the direction and
-/// beyond; if the shortest way back has a different direction, that direction is a shorter way out. Nearly concentric
-/// round cores are nearly equally deep in all directions, so the change of direction is doubled while that shortens the
-/// way.
+/// Improves the best direction of a full polytope if the cores are round. Moves B out along the direction, slightly
+/// beyond contact. If the cores' gap then has a different direction, that direction is a shorter way out. Nearly
+/// concentric round cores are nearly equally deep in all directions, so the change of direction is doubled while that
+/// reduces the depth.
 fn refined<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
@@ -134,7 +134,7 @@ fn refined<A: Support, B: Support>(
     best
 }
 
-/// Returns the contact of cores that touch without common interior: across `normal`.
+/// Returns the contact of cores that touch without common interior, with the normal `normal`.
 fn touching(simplex: &Simplex, normal: DVec3) -> Bridge {
     let Vertex { on_a, on_b, .. } = simplex.vertices[0];
     Bridge { on_a, on_b, distance: 0.0, normal }

@@ -1,4 +1,4 @@
-//! Supporting features: the faces, edges and corners at which convex solids touch, as polygons with names.
+//! Supporting features: the faces, edges and corners at which convex solids touch, as polygons with feature names.
 
 use crate::collide::feature::{self, WHOLE};
 use crate::collide::placed::{largest_axis, sign};
@@ -77,7 +77,7 @@ impl Feature {
         self
     }
 
-    /// Returns the face of a box that faces along `direction`.
+    /// Returns the face of a box whose normal is closest to `direction`.
     pub fn of_box(half: Vec3, direction: Vec3) -> Self {
         let axis = largest_axis(direction);
         let side = sign(direction[axis]);
@@ -106,7 +106,7 @@ impl Feature {
     }
 
     /// Returns the feature of a hull that extends furthest along `direction`: a face that nearly faces that direction,
-    /// otherwise an edge across it, otherwise a corner.
+    /// otherwise an edge perpendicular to it, otherwise a corner.
     pub fn of_hull(hull: &Hull, direction: Vec3) -> Self {
         let (polytope, vertices) = (hull.polytope(), hull.vertices());
         let topology = polytope.topology;
@@ -138,8 +138,8 @@ impl Feature {
         }
     }
 
-    /// Returns the feature of a cylinder or cone that extends furthest along `direction`: an end as an octagon, or the
-    /// line along its side.
+    /// Returns the feature of a cylinder or cone that extends furthest along `direction`: an end, as an octagon, or the
+    /// line along the side.
     pub fn of_truncated_cone(cone: &TruncatedCone, direction: Vec3) -> Self {
         let side = cone.side_normal();
         let out = normalize_or(Vec3::new(direction.x, 0.0, direction.z), Vec3::X);
@@ -157,8 +157,9 @@ impl Feature {
     }
 }
 
-/// Sine of the angle to the axis below which an end touches flat, and its octagon is fixed to the solid. Above it, a
-/// corner of the octagon is where the end extends furthest, so that a tilted solid rolls on its rim.
+/// Sine of the angle between the direction and the axis below which an end counts as touching flat; its octagon is then
+/// fixed to the solid. Above this sine, the octagon has a corner where the end extends furthest, so that a tilted solid
+/// rolls on its rim.
 const LEANING: f32 = 0.01;
 
 /// Returns the octagon of an end: eight points of its rim.

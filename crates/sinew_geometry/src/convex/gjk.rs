@@ -5,15 +5,15 @@
 use super::support::{Posed, Support};
 use sinew_math::DVec3;
 
-/// Share of the squared distance by which it may differ from its lower bound: directions are then accurate to the
-/// square root, 1e-6.
+/// Difference between the squared distance and its lower bound at which the search ends, as a share of the squared
+/// distance. Directions are accurate to its square root, 1e-6.
 const PRECISION: f64 = 1e-12;
-/// Distance, as a share of the sizes, below which cores touch; `f32` positions are coarser.
+/// Distance below which cores count as touching, as a share of the sizes; below the precision of `f32` positions.
 pub(super) const TOUCH: f64 = 3e-8;
 /// Height, relative to the edges, below which a tetrahedron is flat.
 const THIN: f64 = 1e-12;
-/// Largest number of steps, far above the need: polytopes take about as many steps as they have nearby faces, round
-/// cores some 30.
+/// Largest number of steps, a safeguard: polytopes take about as many steps as they have nearby faces, round cores
+/// about 30.
 const MOST_STEPS: usize = 128;
 
 /// A point of the Minkowski difference A − B, and the points of A and B that give it.
@@ -57,7 +57,7 @@ const MOST_STALLS: u32 = 12;
 
 /// Result of the search for two cores.
 #[derive(Clone, Copy, Debug)]
-#[expect(clippy::large_enum_variant, reason = "it lives on the stack, for one pair")]
+#[expect(clippy::large_enum_variant, reason = "the value is on the stack, for one pair")]
 pub(super) enum Cores {
     Apart(Bridge),
     /// The cores overlap: the simplex contains the origin, or touches it.
@@ -72,7 +72,7 @@ pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>
     let mut simplex = Simplex::of(support(a, b, start));
     let mut nearest = simplex.nearest();
     // The best separating direction and the closest points are stored separately: at distances small against the sizes,
-    // rounding makes neither a measure of the other.
+    // rounding prevents computing one from the other.
     let (mut apart, mut toward_a) = (f64::NEG_INFINITY, DVec3::X);
     let (mut shortest, mut bridge) = (f64::INFINITY, simplex);
     let mut stalls = 0;
@@ -111,7 +111,7 @@ pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>
     Cores::Apart(Bridge { on_a, on_b, distance: apart, normal: -toward_a })
 }
 
-/// Knowledge of a separating direction. If one is known, no simplex contains the origin, even if rounding suggests it.
+/// Whether a separating direction is known. If it is, no simplex contains the origin, even if rounding suggests so.
 #[derive(Clone, Copy, PartialEq)]
 enum Known {
     Nothing,

@@ -1,7 +1,8 @@
 //! Queries of pairs of placed shapes, without a world: distance, depth, and casts.
 //!
-//! Every query works for every pair of shapes. Solids are cores with a radius. Separated cores use GJK, overlapping
-//! ones EPA, both in `f64`, so that a shape of 1 mm against one of 100 m is as precise as two equal sizes.
+//! The queries work for every pair of bounded convex shapes, and for a half-space and a bounded convex shape. A solid
+//! is a core with a radius. GJK finds the gap of separated cores, EPA the depth of overlapping cores. Both use `f64`,
+//! so that results for shapes of 1 mm and 100 m are as precise as for shapes of equal size.
 //!
 //! ```
 //! use sinew_math::{Rotation, Transform, Vec3};

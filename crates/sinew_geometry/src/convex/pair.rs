@@ -11,7 +11,7 @@ use sinew_math::{DVec3, Transform, Vec3};
 pub struct Gap {
     /// Distance, metres; 0 if the solids touch, minus the depth if they overlap.
     pub distance: f32,
-    /// Unit normal from A to B, world: after a displacement by the depth along it, B no longer overlaps A.
+    /// Unit normal from A to B, world. A displacement of B along it by the depth separates overlapping solids.
     pub normal: Vec3,
     /// Point on A's surface, world, metres.
     pub on_a: Vec3,
@@ -19,12 +19,12 @@ pub struct Gap {
     pub on_b: Vec3,
 }
 
-/// Returns the gap between two placed shapes, or their penetration; `None` for two half-spaces, a mesh, or numbers that
-/// are not finite.
+/// Returns the gap between two placed shapes, or their penetration. Returns `None` if both are half-spaces, one is a
+/// mesh or height field, or a number is not finite.
 ///
 /// The result is accurate to a few roundings (6e-8) of the sizes and the distance. If several ways out are shortest,
-/// the choice is deterministic. For round, nearly concentric shapes the result may exceed the shortest way by 5e-5 of
-/// the sizes.
+/// the choice is deterministic. For round, nearly concentric shapes the depth may exceed that of the shortest way out
+/// by 5e-5 of the sizes.
 pub fn gap(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &Transform) -> Option<Gap> {
     if !(world_from_a.is_finite() && world_from_b.is_finite()) {
         return None;
@@ -86,7 +86,7 @@ impl Bridge {
 
 impl From<Bridge> for Gap {
     fn from(bridge: Bridge) -> Self {
-        // The points found for overlapping cores are on faces, not opposite each other, so their mean is used.
+        // The points of overlapping cores are not exactly opposite each other, so the contact is placed at their mean.
         let middle = (bridge.on_a + bridge.on_b) * 0.5;
         let half = bridge.normal * (0.5 * bridge.distance);
         Self {

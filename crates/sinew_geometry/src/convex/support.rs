@@ -7,8 +7,8 @@ use crate::revolved::{TaperedCapsule, TruncatedCone};
 use crate::shape::Shape;
 use sinew_math::{DVec3, Transform, Vec3, max, min};
 
-/// A convex solid as a core and a rounding radius: the points within the radius of the core. Every type with this trait
-/// collides with every other. Coordinates are in the solid's own frame.
+/// A convex solid: all points within the rounding radius of a core. Any two types with this trait can collide.
+/// Coordinates are in the solid's own frame.
 pub trait Support {
     /// Returns the point of the core that is furthest along `direction`, which has any length but 0.
     fn support(&self, direction: DVec3) -> DVec3;
@@ -19,8 +19,7 @@ pub trait Support {
     /// Radius of a ball around the origin that contains the solid, metres.
     fn reach(&self) -> f32;
 
-    /// Half the width of the solid where it is thinnest, metres; the scale for lengths that are negligible in the
-    /// choice of contact points.
+    /// Half the least width of the solid, metres. It sets the tolerances in the choice of contact points.
     fn thinnest(&self) -> f32;
 
     /// Returns the feature of the core's surface that touches another solid along the unit vector `direction`: the face

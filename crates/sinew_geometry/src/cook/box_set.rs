@@ -41,7 +41,7 @@ impl<'a> BoxSet<'a> {
         (0..self.placed.len()).filter(holds)
     }
 
-    /// Samples about `count` points of all faces, uniform by area, without points inside another box.
+    /// Samples about `count` points of the boxes' faces, uniform by area, and drops those inside another box.
     pub fn outer_surface(&self, count: usize, random: &mut Random) -> Vec<Vec3> {
         let total: f32 = self.boxes.iter().map(Cuboid::surface_area).sum();
         let (mut outer, mut own) = (Vec::new(), Vec::new());
@@ -54,7 +54,7 @@ impl<'a> BoxSet<'a> {
         outer
     }
 
-    /// Volume of the union, m³: each box's volume, with shares divided among boxes that contain the same sample points.
+    /// Estimates the volume of the union, m³: each sample point counts divided by the number of boxes that contain it.
     pub fn volume(&self, random: &mut Random) -> f32 {
         const SAMPLES: usize = 100_000;
         let total: f32 = self.boxes.iter().map(Cuboid::volume).sum();
@@ -64,7 +64,7 @@ impl<'a> BoxSet<'a> {
             let mut share = 0.0;
             for _ in 0..count {
                 let p = placed.point(random.in_cube() * block.half_extents);
-                // Rounding may put the sample just outside its own box.
+                // Because of rounding, the sample may be just outside its own box.
                 share += 1.0 / usize::max(self.around(p).count(), 1) as f32;
             }
             volume += block.volume() * share / count as f32;

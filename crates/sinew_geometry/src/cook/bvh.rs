@@ -5,7 +5,7 @@ use crate::triangles::{Branch, DEPTH, Tree, closest_on_triangle, normal};
 use core::ops::Range;
 use sinew_math::{Vec3, abs3, max3, trig};
 
-/// Distance, in radii of a cluster, beyond which the cluster counts as one dipole (Barill et al. 2018 use 2).
+/// Distance, in radii of a cluster, beyond which the cluster is approximated by one dipole (Barill et al. 2018 use 2).
 const FAR: f32 = 2.0;
 
 /// A triangle mesh with queries for the closest point of its surface, and for whether a point is inside.

@@ -4,8 +4,8 @@ use super::fitted::around;
 use crate::boxes::{Cuboid, Obb};
 use sinew_math::max;
 
-/// Returns at most about `most` boxes. The larger half is kept; the others are merged per cell of a grid of cubes, with
-/// the smallest cubes that leave few enough boxes.
+/// Returns about `most` boxes at most. Keeps the `most / 2` largest boxes, and merges the others that are in the same
+/// cell of a grid. The cells are the smallest cubes that leave few enough boxes.
 pub(super) fn at_most(most: usize, mut blocks: Vec<Obb>, thinnest: f32) -> Vec<Obb> {
     if blocks.len() <= most {
         return blocks;

@@ -7,9 +7,9 @@ use sinew_math::{Mat3, Rotation, Vec3, any_orthonormal, normalize_or};
 
 /// Cosine (10°) above which normals count as one direction.
 const SAME: f32 = 0.985;
-/// Cosine (1.8°) above which an axis is replaced by that of the world.
+/// Cosine (1.8°) of the angle to a world axis above which a direction is replaced by that axis.
 const LEVEL: f32 = 0.9995;
-/// Volume of an oriented box, as a share of the axis-aligned box's, below which it replaces the axis-aligned box.
+/// An oriented box replaces the axis-aligned box if its volume is below this share of the axis-aligned box's volume.
 const GAIN: f32 = 0.92;
 
 /// Returns the smallest of the boxes along the world's axes and along the largest facets of a part of a mesh.
@@ -37,7 +37,7 @@ pub(super) fn facet_directions(mesh: &SurfaceMesh, triangles: &[u32]) -> Vec<(Ve
     }))
 }
 
-/// Merges weighted directions that agree except for sign; returns them with the heaviest first.
+/// Merges weighted directions that nearly agree except for sign; returns them in the order of decreasing weight.
 pub(super) fn cluster(weighted: impl Iterator<Item = (Vec3, f32)>) -> Vec<(Vec3, f32)> {
     /// Largest number of directions; further directions of a round surface do not improve the fit.
     const MOST: usize = 24;
@@ -74,7 +74,8 @@ pub(super) fn cluster(weighted: impl Iterator<Item = (Vec3, f32)>) -> Vec<(Vec3,
     clusters
 }
 
-/// Returns frames with one axis along a heavy direction and another along the heaviest direction perpendicular to it.
+/// Returns frames with one axis along a direction of large weight, and another along the perpendicular direction of the
+/// largest weight.
 pub(super) fn orientations(directions: &[(Vec3, f32)]) -> impl Iterator<Item = Rotation> {
     const TRIED: usize = 3;
     let first = directions.iter().take(TRIED).map(|&(x, _)| snap(x));

@@ -10,7 +10,7 @@ use sinew_math::{Random, Vec3, max};
 /// Number of sample points on the mesh and on the boxes.
 const SAMPLES: usize = 20_000;
 
-/// Distances between two surfaces, and a ratio of volumes.
+/// Distances between the surfaces of the boxes and the mesh, and the ratio of their volumes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
     /// Volume of the boxes' union divided by that of the mesh; `None` if the mesh is open or has no volume.
@@ -33,7 +33,7 @@ pub(super) fn measure(mesh: &SurfaceMesh, bvh: &MeshBvh, blocks: &[Obb], random:
     let [p95_back, max_back] = quantiles(outer.iter().map(|&p| bvh.closest_point(p).distance).collect());
     let ratio = mesh.is_closed().then(|| tree.volume(random) / enclosed_volume(mesh, bvh, random));
     Deviation {
-        // Closed shells may cancel; then the enclosed volume is 0.
+        // The volumes of closed shells may cancel; then the enclosed volume is 0.
         volume_ratio: ratio.filter(|ratio| ratio.is_finite()),
         distance_p95: max(p95_there, p95_back),
         distance_max: max(max_there, max_back),
@@ -47,8 +47,8 @@ fn quantiles(mut distances: Vec<f32>) -> [f32; 2] {
     [distances[(distances.len() * 95).div_ceil(100) - 1], last]
 }
 
-/// Volume of a closed mesh, m³: by the divergence theorem if its parts are apart, otherwise by sample points with a
-/// winding number.
+/// Volume of a closed mesh, m³. Uses the divergence theorem if the bounds of its parts are apart, otherwise the winding
+/// numbers of sample points.
 fn enclosed_volume(mesh: &SurfaceMesh, bvh: &MeshBvh, random: &mut Random) -> f32 {
     const ACROSS: usize = 48;
     if !parts_meet(mesh) {

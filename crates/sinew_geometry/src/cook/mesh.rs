@@ -1,4 +1,4 @@
-//! Prepares a triangle mesh for cooking: checks, welds, splits into connected parts.
+//! Prepares a triangle mesh for cooking: checks it, welds its vertices, and finds its connected parts.
 
 use crate::boxes::Aabb;
 use core::fmt;
@@ -68,7 +68,7 @@ impl CookError {
     }
 }
 
-/// Repairs of a mesh, as counts.
+/// Numbers of repaired faults of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repairs {
     /// Triangles without area, which are dropped.

@@ -3,19 +3,19 @@
 //! Levels are drawn as triangles, but collide better as boxes, which are solid, few, and have no internal edges.
 //! [`cook`] converts a mesh; [`Cooked::deviation`] measures the error.
 //!
-//! 1. The mesh is checked, welded and split into its connected parts.
-//! 2. A part that is a box within the tolerance becomes that box. Others are divided by the planes of their own facets
-//!    into cells (with regular planes where they are slanted or round); cells inside the mesh by its winding number are
-//!    full and are covered by boxes as large as possible.
-//! 3. Flat regions far from any box, as of a sheet without thickness, become plates behind their faces.
-//! 4. Of more than a few hundred boxes the smallest are merged, cell by cell of a grid, because the search for merges
-//!    takes quadratic time.
-//! 5. Steps that add least to the squared distance between the surfaces, dropping a box or merging two, follow until at
-//!    most the requested number remains.
-//! 6. A box with a walkable top is aligned with its ground: treads stay level, and as high as drawn.
+//! 1. The mesh is checked, its vertices are welded, and it is split into connected parts.
+//! 2. A part that is a box within the tolerance becomes that box. Any other part is divided into cells by the planes of
+//!    its own facets, and by regular planes where it is slanted or round. Cells that are inside the mesh by its winding
+//!    number are covered by boxes as large as possible.
+//! 3. Flat regions far from any box, such as sheets without thickness, become plates behind their faces.
+//! 4. If there are more than a few hundred boxes, the smallest are merged per cell of a grid, because the search for
+//!    merges takes quadratic time.
+//! 5. Boxes are dropped or merged until at most the requested number remains. Each step is the one that adds least to
+//!    the squared distance between the surfaces.
+//! 6. A box with a walkable top is aligned with the mesh's ground: treads stay level and keep their height.
 //!
-//! Few triangles give few, coarse boxes. Then all steps are repeated with half the tolerance, as long as boxes remain
-//! and the error decreases.
+//! A mesh of few triangles gives few, coarse boxes. Then all steps are repeated with half the tolerance, as long as the
+//! budget of boxes allows it and the error decreases.
 
 mod box_set;
 mod bvh;
@@ -78,7 +78,7 @@ pub enum Progress {
     Boxes(usize),
 }
 
-/// Lengths that decide the cooking, metres, and the size of cells.
+/// Tolerances of one run, metres, and the size of cells.
 #[derive(Clone, Copy, Debug)]
 struct Scale {
     /// Largest distance of a box from its part of the mesh.
@@ -96,7 +96,7 @@ struct Scale {
     finer: f32,
 }
 
-/// [`Scale::filled`], in tolerances.
+/// Ratio of [`Scale::filled`] to the requested tolerance.
 const FILLED: f32 = 2.0;
 
 /// Returns boxes for a mesh of vertices (metres) and triangles, counter-clockwise seen from outside. The same mesh
@@ -138,12 +138,12 @@ pub fn cook(
 
 /// Largest number of triangles of a mesh that is cooked again because it gave few boxes.
 const FEW_TRIANGLES: usize = 4096;
-/// Number of times that the tolerance is halved.
+/// Largest number of times that the tolerance is halved.
 const FINER: usize = 2;
 /// Share of the tolerance within which 95 % of the surfaces must be for the boxes to be close enough: a plate is half
 /// as thick as the tolerance.
 const CLOSE: f32 = 0.55;
-/// Largest ratio of the new error to the old one at which a result with more boxes is used.
+/// Largest ratio of the new error to the old error at which a result with more boxes is used.
 const WORTH: f32 = 0.9;
 
 /// Returns boxes, and their deviation from the mesh, for the requested tolerance times `finer`.
@@ -168,7 +168,7 @@ fn cook_once(
     (boxes, deviation)
 }
 
-/// Number of sample points of the mesh by which boxes are judged.
+/// Number of sample points of the mesh from which errors of boxes are computed.
 const POINTS: usize = 16_384;
 /// Largest number of boxes at the start of the search for merges, unless nearly as many are requested.
 const MOST_FIRST: usize = 768;
@@ -177,7 +177,8 @@ fn scale(mesh: &SurfaceMesh, options: &CookOptions, finer: f32) -> Scale {
     let diagonal = mesh.diagonal();
     Scale {
         tolerance: finer * options.tolerance * diagonal,
-        // Least thickness that the engine resolves: a box thinner than the contact slop is no obstacle.
+        // Least thickness of an obstacle: bodies sink into a box by the contact slop, so a thinner box would not stop
+        // them.
         thinnest: max(5e-4 * diagonal, 1e-6),
         thickness: 0.5 * options.tolerance * diagonal,
         unseen: 0.15 * finer * options.tolerance * diagonal,

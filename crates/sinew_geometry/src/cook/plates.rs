@@ -15,7 +15,7 @@ const CELLS: usize = 24;
 /// Largest number of boxes of one region.
 const MOST_BOXES: usize = 64;
 
-/// Returns the triangles of which the centroid or a corner region is farther from all boxes than the tolerance.
+/// Returns the triangles whose centroid or a point near a corner is farther from all boxes than the tolerance.
 pub(super) fn uncovered(mesh: &SurfaceMesh, triangles: &[u32], blocks: &[Obb], scale: Scale) -> Vec<u32> {
     let blocks: Vec<_> = blocks.iter().map(Cuboid::placed).collect();
     let near = |p: Vec3| blocks.iter().any(|block| block.signed_distance(p).abs() <= scale.tolerance);
@@ -39,7 +39,7 @@ pub(super) fn plates(mesh: &SurfaceMesh, triangles: &[u32], scale: Scale) -> Vec
         .collect()
 }
 
-/// Returns regions of connected triangles near a plane, each from its largest triangle on.
+/// Returns regions of connected triangles near a common plane. Each region grows from its largest triangle.
 fn flat_regions(mesh: &SurfaceMesh, triangles: &[u32], scale: Scale) -> Vec<Vec<u32>> {
     let neighbors = neighbors(mesh, triangles);
     let area: Vec<f32> = triangles.iter().map(|&t| mesh.doubled_area(t as usize).length()).collect();
@@ -118,7 +118,7 @@ fn plates_of_region(mesh: &SurfaceMesh, region: &[u32], scale: Scale) -> Vec<Obb
     let grid = Grid::new(planes, |low, high| {
         let middle = Vec3::new(0.5 * (low[0] + high[0]), top, 0.5 * (low[2] + high[2]));
         let away = rotation.inverse() * (bvh.closest_point(rotation * middle).point) - middle;
-        // The point is beside the region, not over it.
+        // The point is beside the region, not over one of its triangles.
         away.x * away.x + away.z * away.z < 0.05 * step * step
     });
     let boxes = grid.cover(0.01, MOST_BOXES);

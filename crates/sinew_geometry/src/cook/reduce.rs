@@ -23,7 +23,8 @@ struct Entry {
     bounds: Aabb,
     /// Points of the mesh to which this box is the closest.
     points: Vec<u32>,
-    /// Integral of squared distances to and from the box's surface, m⁴, and the number of boxes when it was computed.
+    /// Integral of the squared distances to and from the box's surface, m⁴, and the number of boxes at which it was
+    /// computed.
     cost: f32,
     seen: usize,
     /// True if the box has been neither dropped nor merged.
@@ -76,10 +77,10 @@ impl<'a> Reduction<'a> {
         reduction
     }
 
-    /// Runs the reduction until at most `most` boxes are left and every further step would be visible; returns the
-    /// boxes. `tick` gets the number of boxes after each step.
+    /// Drops or merges boxes until at most `most` boxes remain and every further step would be visible; returns the
+    /// boxes. Calls `tick` with the number of remaining boxes after each step.
     pub fn run(mut self, most: usize, tick: &mut dyn FnMut(usize)) -> Vec<Obb> {
-        // Squared distance that is invisible; multiplied by the affected area.
+        // Squared distance below which an error is invisible; multiplied by the affected area.
         let free = self.scale.unseen * self.scale.unseen;
         while self.left > 1 {
             let cheaper = |a: usize, b: usize| {
@@ -240,8 +241,8 @@ impl<'a> Reduction<'a> {
         near.into_iter().take(NEIGHBORS).map(|(_, _, j)| j).collect()
     }
 
-    /// Returns two single boxes that could replace two: the smallest around both, along the axes of either, of the
-    /// world, or of the mesh there; and the plate behind their faces.
+    /// Returns two candidates for a single box that replaces boxes `i` and `j`: the smallest box around both, along the
+    /// axes of either box, of the world, or of the mesh there; and the plate behind their faces.
     fn merged(&self, i: usize, j: usize) -> [Obb; 2] {
         let [a, b] = [&self.entries[i], &self.entries[j]];
         let corners = [a.block.corners(), b.block.corners()].concat();

@@ -1,4 +1,4 @@
-//! Aligns boxes with their ground: treads are level, and as high as drawn.
+//! Aligns the tops of boxes with the walkable ground that they represent: treads stay level and keep their height.
 
 use super::Scale;
 use super::fit::cluster;

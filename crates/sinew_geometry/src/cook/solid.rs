@@ -23,9 +23,9 @@ const MOST_BOXES: usize = 256;
 /// Share of a part's volume that may stay uncovered.
 const LEFT_OUT: f32 = 0.005;
 
-/// Returns boxes for a connected part. A part that is nearly a box gives one box. Other parts give boxes of the inside
-/// or plates behind the faces if those are closer to the part. Filling an open shell costs the faces that close its
-/// holes.
+/// Returns boxes for a connected part. A part that is nearly a box gives one box. Other parts give boxes that fill the
+/// inside, or plates behind the faces if those are closer to the part. Boxes that fill an open shell also have faces
+/// across its holes, which count as error.
 pub(super) fn blocks_of_part(
     mesh: &SurfaceMesh,
     bvh: &MeshBvh,
@@ -109,8 +109,8 @@ fn boxes_of_cells(
     boxes.iter().map(block).collect()
 }
 
-/// Returns the planes of the part's facets along each axis of the frame, and regular planes if much of the part is
-/// slanted.
+/// Returns the positions of the planes that divide the part into cells, along each axis of the frame: those of the
+/// part's facets, and regular planes if much of the part is slanted.
 fn planes(mesh: &SurfaceMesh, triangles: &[u32], rotation: Rotation, scale: Scale) -> [Vec<f32>; 3] {
     let mut facets: [Vec<(f32, f32)>; 3] = Default::default();
     let (mut slanted, mut area) = (0.0, 0.0);
@@ -138,7 +138,7 @@ fn planes(mesh: &SurfaceMesh, triangles: &[u32], rotation: Rotation, scale: Scal
     })
 }
 
-/// Returns the two ends and the heaviest coordinates between them, with gaps of at least `apart`.
+/// Returns the two ends and the coordinates of largest weight between them, at least `apart` from each other.
 fn distinct(mut weighted: Vec<(f32, f32)>, ends: [f32; 2], apart: f32) -> Vec<f32> {
     weighted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut clusters: Vec<(f32, f32, f32)> = Vec::new();
@@ -163,7 +163,7 @@ fn distinct(mut weighted: Vec<(f32, f32)>, ends: [f32; 2], apart: f32) -> Vec<f3
     planes
 }
 
-/// Returns the planes with regular ones between them, so that neighbours are at most `step` apart.
+/// Returns the planes, and regular planes between them so that neighbours are at most `step` apart.
 fn subdivided(planes: &[f32], step: f32) -> Vec<f32> {
     let mut out = vec![planes[0]];
     for pair in planes.windows(2) {

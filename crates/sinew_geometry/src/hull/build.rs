@@ -13,7 +13,7 @@ const BUDGETS: [usize; 4] = [usize::MAX, MAX_VERTICES, 128, MAX_FACES / 2 + 2];
 /// Distances from a face's plane, in grid steps, within which a corner counts as on the face; tried in this order. The
 /// last one merges only exactly coplanar triangles, and always succeeds.
 const TOLERANCES: [f64; 4] = [8.0, 2.0, 0.5, 0.0];
-/// Distance by which merging may leave a corner outside, as a share of the size.
+/// Distance by which merging faces may leave a corner outside the hull, as a share of the size.
 const MOST_LOST: f32 = 4e-6;
 /// Least thickness of a hull, as a share of its size.
 const THINNEST: f32 = 1e-4;
@@ -63,8 +63,8 @@ fn with_budget(grid: &Grid, budget: usize) -> Result<Option<Hull>, HullError> {
     Err(HullError::TooThin)
 }
 
-/// Returns the corners that faces use, and the faces by corner index; `None` if there are too many. Both are in a
-/// canonical order.
+/// Returns the corners that faces use, and the faces by corner index; `None` if there are too many faces or corners.
+/// Both lists are in a canonical order.
 fn numbered(places: &[Vec3], faces: &merge::Faces) -> Option<(Vec<Vec3>, Vec<Vec<u8>>)> {
     let mut used: Vec<u32> = faces.iter().flatten().copied().collect();
     used.sort_unstable();
@@ -104,7 +104,8 @@ pub(super) fn from_faces(vertices: Vec<Vec3>, loops: &[Vec<u8>]) -> Result<Hull,
     for ring in loops {
         let (normal, area) = newell(&vertices, ring).ok_or("a face of a hull has no area")?;
         let on_face = ring.iter().map(|&i| normal.dot(vertices[usize::from(i)])).fold(f32::INFINITY, min);
-        // The plane is at the furthest corner, so that the plane bounds the hull up to rounding.
+        // The plane passes through the corner furthest along the normal, so that it bounds the hull except for
+        // rounding.
         let offset = reach(&vertices, normal);
         if offset - on_face > CONVEX * size + ROUNDING * bounding_radius {
             return Err("a hull is not convex");

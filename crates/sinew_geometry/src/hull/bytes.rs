@@ -1,10 +1,10 @@
-//! Hulls as bytes: corners and faces, from which all other data follows.
+//! Hulls as bytes: corners and faces, from which all other data is computed.
 
 use super::build::from_faces;
 use super::{Hull, MAX_FACES, MAX_VERTICES};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
-/// Bytes of a corner, and of the smallest face.
+/// Sizes of a corner and of the smallest face, bytes.
 const VERTEX_BYTES: usize = 12;
 const FACE_BYTES: usize = 4 + 3;
 
@@ -32,7 +32,7 @@ impl Hull {
         write(w, &self.vertices, faces);
     }
 
-    /// Reads the format of [`save`](Self::save).
+    /// Reads a hull from the bytes that [`save`](Self::save) writes.
     ///
     /// # Errors
     /// If the bytes end too early or are not those of a convex solid.

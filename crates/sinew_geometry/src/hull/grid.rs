@@ -1,11 +1,12 @@
-//! Points as whole numbers, so that tests of plane sides are exact, for every cloud.
+//! Points as whole numbers, so that tests on which side of a plane a point is are exact for every cloud.
 
 use super::HullError;
 use sinew_math::{Vec3, max3, min3};
 
-/// Largest number of steps along the longest side of the bounds: with it every multiple of the step is exact in `f32`.
+/// Largest number of steps along the longest side of the bounds. With at most this many steps, every multiple of the
+/// step is exact in `f32`.
 const STEPS: f64 = 8_388_608.0;
-/// Range of the longest side of a hull, metres: beyond it the inertia leaves the range of `f32`.
+/// Valid range of the longest side of a hull, metres. Outside this range the inertia would leave the range of `f32`.
 pub(super) const SIZES: core::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
 /// Points of a cloud on a grid whose step is a power of two, at most 2⁻²² of the longest side; sorted and unique, so
@@ -59,7 +60,7 @@ fn wide(p: Vec3) -> [f64; 3] {
     p.to_array().map(f64::from)
 }
 
-/// Returns the smallest power of two of which [`STEPS`] steps cover the bounds.
+/// Returns the smallest power of two for which at most [`STEPS`] steps cover the bounds.
 fn step_for(low: [f64; 3], high: [f64; 3]) -> Result<f64, HullError> {
     let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, |a: f64, b| if b > a { b } else { a });
     if size == 0.0 {

@@ -7,7 +7,7 @@ use super::quick::{self, Point, Triangle, side};
 pub(super) type Faces = Vec<Vec<u32>>;
 
 /// Returns the faces of the hull of `points`; corners within `tolerance` (grid steps) of a face's plane count as on the
-/// face. Every corner has three faces or more. A tolerance of 0 loses no volume.
+/// face. At least three faces meet at every corner. With a tolerance of 0, the hull loses no volume.
 ///
 /// # Errors
 /// If no solid remains.

@@ -53,7 +53,7 @@ impl fmt::Display for HullError {
             Self::TooFewPoints => "a hull needs four different points",
             Self::Collinear => "all points lie on a line",
             Self::Coplanar => "all points lie in a plane",
-            Self::TooThin => "thinner than 1/10,000 of the longest side",
+            Self::TooThin => "the hull is thinner than 1/10,000 of its longest side",
             Self::Size => "the longest side must be between 1e-6 and 1e6 metres",
         })
     }
@@ -90,16 +90,16 @@ impl Hull {
     /// Builds the smallest convex solid that contains all points (metres), by quickhull with exact decisions.
     ///
     /// Points are snapped to a grid of at most 2⁻²² of the longest side of their bounds, on which all decisions are
-    /// exact. Faces within 2e-6 of that side of one plane become one polygon; no point is further outside than 1e-5 of
-    /// that side. Order and duplicates of the points do not matter.
+    /// exact. Triangles that are in one plane, within 2e-6 of that side, become one polygon. No point is further
+    /// outside the hull than 1e-5 of that side. Order and duplicates of the points do not matter.
     ///
-    /// A hull that would have more than [`MAX_FACES`] faces is **simplified**: it grows from four points by the
-    /// furthest outside point, and ends at 252, 128 or 66 corners, at the first of these with few enough faces. Then
-    /// points of the cloud may be outside the hull; [`distance`](Self::distance) returns how far (about 5 % of the
+    /// A hull that would have more than [`MAX_FACES`] faces is **simplified**. Quickhull adds the furthest outside
+    /// point first, and stops at 252, 128 or 66 corners: at the largest of these numbers that gives few enough faces.
+    /// Points of the cloud may then be outside the hull; [`distance`](Self::distance) returns how far (about 5 % of the
     /// radius for a ball of 10,000 points).
     ///
     /// # Errors
-    /// [`HullError`], if the points span no solid, or a number is not a valid length.
+    /// [`HullError`], if the points span no solid, a coordinate is not finite, or the longest side is out of range.
     pub fn new(points: &[Vec3]) -> Result<Self, HullError> {
         build::build(points)
     }

@@ -120,12 +120,11 @@ impl<'a> Polytope<'a> {
         (highest, normal)
     }
 
-    /// Returns the surface point closest to an outside point, on a face toward it; for an inside point the point
-    /// itself.
+    /// Returns the point of the surface closest to `p`, on a face that faces `p`; returns `p` itself if it is inside.
     pub fn closest(&self, p: Vec3) -> Vec3 {
         let (mut best, mut closest) = (f32::INFINITY, p);
-        // Because of rounding, a point on a face may be just below that face and just above a neighbour that is
-        // elsewhere.
+        // Because of rounding, a point on a face may count as just below that face and just above the plane of a
+        // neighbouring face.
         let lowest = -1e-6 * ((p - self.center).length() + p.length());
         for (face, plane) in self.planes.iter().enumerate() {
             let height = plane.height(p);
@@ -169,7 +168,7 @@ impl<'a> Polytope<'a> {
         }
         let span = p - self.closest(p);
         let distance = span.length();
-        // The direction between close points is rounding, which distant corners would amplify to millimetres.
+        // Rounding dominates the direction between close points; at distant corners the error would be millimetres.
         let noise = 1e-4 * (p - self.center).length();
         if distance > noise { (distance, span / distance) } else { (distance, normal) }
     }

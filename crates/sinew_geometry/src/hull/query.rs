@@ -5,8 +5,8 @@ use sinew_math::Vec3;
 
 impl Hull {
     /// Returns the signed distance of a point to the surface, metres, and the unit outward normal at the closest point
-    /// of the surface: exact for faces, edges and corners. If several points are closest, the one on the first face is
-    /// used.
+    /// of the surface. The distance is exact for faces, edges and corners, except for rounding. If several points are
+    /// closest, the point on the first of their faces is used.
     pub fn distance(&self, p: Vec3) -> (f32, Vec3) {
         self.polytope().distance(p)
     }

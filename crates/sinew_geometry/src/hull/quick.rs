@@ -1,5 +1,5 @@
-//! Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", ACM TOMS 1996) over whole
-//! numbers: the triangles are exactly convex. Points on a face or an edge are dropped.
+//! Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", ACM TOMS 1996) in whole
+//! numbers, so that the triangles form an exactly convex surface. Points on a face or an edge are dropped.
 
 use super::HullError;
 use std::collections::BinaryHeap;
@@ -141,7 +141,8 @@ impl<'a> Growing<'a> {
         self.triangles.push(Triangle { corners, neighbors, plane, outside: Vec::new(), alive: true });
     }
 
-    /// Assigns each point to a triangle from `first` on that has it outside; drops inner points.
+    /// Assigns each point to one of the triangles from index `first` on whose plane it is outside; drops points that
+    /// are outside none of them.
     fn share_out(&mut self, orphans: Vec<u32>, first: usize) {
         let points = self.points;
         for i in orphans {

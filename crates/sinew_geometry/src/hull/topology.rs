@@ -107,7 +107,7 @@ impl Outline {
                 return Err("a face of a hull has fewer than three corners");
             }
             if ring.iter().any(|&corner| usize::from(corner) >= corners) {
-                return Err("a face of a hull names a corner that is not there");
+                return Err("a face of a hull refers to a missing corner");
             }
             faces.push(Loop { first: half_edges.len() as u16, count: ring.len() as u16 });
             for (k, &origin) in ring.iter().enumerate() {
@@ -118,7 +118,7 @@ impl Outline {
         let mut order: Vec<u16> = (0..half_edges.len() as u16).collect();
         order.sort_unstable_by_key(|&side| ends[usize::from(side)]);
         if order.windows(2).any(|pair| ends[usize::from(pair[0])] == ends[usize::from(pair[1])]) {
-            return Err("two faces of a hull have the same side");
+            return Err("two faces of a hull have a side with the same direction");
         }
         for (side, &[from, to]) in ends.iter().enumerate() {
             let across = order.binary_search_by_key(&[to, from], |&other| ends[usize::from(other)]);
@@ -141,7 +141,7 @@ impl Outline {
         for (start, &leaving) in start.into_iter().zip(&leaving) {
             let around = start.map_or(0, |start| self.turns_around(start));
             if leaving < 3 || around != leaving {
-                return Err("in a corner of a hull fewer than three faces meet, or two fans of them");
+                return Err("fewer than three faces, or two fans of faces, meet at a corner of a hull");
             }
         }
         let euler = corners as i64 - self.half_edges.len() as i64 / 2 + self.faces.len() as i64;

@@ -30,7 +30,7 @@ impl WaterPlane {
 pub struct Submerged {
     /// Volume, m³.
     pub volume: f32,
-    /// Volume times centre, m⁴; moments of parts add up.
+    /// Volume times centre, m⁴. The moment of a body is the sum of the moments of its parts.
     moment: Vec3,
 }
 
@@ -61,8 +61,8 @@ impl Submerged {
 }
 
 impl Shape {
-    /// Returns the part of the shape below the surface: its volume, and its centre in the world. Exact for every shape
-    /// up to rounding (about 1e-5 of the volume); zero for half-spaces, meshes and height fields.
+    /// Returns the part of the placed shape below the water surface: its volume, and its centre in the world. The
+    /// result is exact up to about 1e-5 of the volume; it is zero for half-spaces, meshes and height fields.
     pub fn submerged(&self, world_from_shape: &Transform, plane: &WaterPlane) -> Submerged {
         // Computed in the shape's frame, where all coordinates are small.
         let normal = world_from_shape.rotation.inverse() * plane.normal;
@@ -116,8 +116,9 @@ fn ball_below(s: f32, normal: Vec3) -> Submerged {
 /// Returns the part of a convex polyhedron below the surface. `faces` are the corners of each face in order,
 /// counter-clockwise seen from outside. The centre is in the frame of the corners.
 ///
-/// Each face is clipped and joined to one point **of the surface** by tetrahedra. The cut has no height over that
-/// point, so it is not needed (divergence theorem).
+/// By the divergence theorem, the volume is the sum of the tetrahedra between one point and the triangles of all
+/// clipped faces and of the cut. The point is **on the water surface**, so the tetrahedra over the cut have no volume
+/// and are left out.
 pub fn submerged_hull<F>(faces: impl Iterator<Item = F>, plane: &WaterPlane) -> Submerged
 where
     F: Iterator<Item = Vec3> + Clone,
@@ -197,7 +198,7 @@ fn half_ball_below(a: Vec3, n: Vec3, s: f32) -> Submerged {
     let across = a - n * cos;
     let sin = max(across.length(), 1e-6);
     let rho = max((1.0 - s * s).sqrt(), 1e-6);
-    // Position where the flat side meets the cut, along `across` in units of the cut's radius.
+    // Position along `across` at which the flat side meets the cut, in units of the cut's radius.
     let q = clamp(-s * cos / (sin * rho), -1.0, 1.0);
     let cut = rho * rho * segment(-q);
     let cut_moment = 2.0 / 3.0 * rho * rho * rho * (1.0 - q * q) * (1.0 - q * q).sqrt();
@@ -217,10 +218,11 @@ fn root(c: f32) -> f32 {
     max(1.0 - c * c, 0.0).sqrt()
 }
 
-/// Part of a cylinder of radius 1 along y with `n·x ≤ s`: the height range of whole disks, and the range in which the
-/// surface cuts the disks at `x = c(y)`, with x the direction from the axis up to the surface.
+/// Part of a cylinder of radius 1 along y with `n·x ≤ s`. It consists of whole disks in one range of heights, and in
+/// another range of disks that the water surface cuts at `x = c(y)`, where x is the direction from the axis up to the
+/// surface.
 fn cylinder_below(half_height: f32, normal: Vec3, s: f32) -> Submerged {
-    // Mirrored so that smaller y is deeper.
+    // The cylinder is mirrored so that smaller y is deeper.
     let (mirror, cos) = if normal.y < 0.0 { (-1.0, -normal.y) } else { (1.0, normal.y) };
     let flat = Vec3::new(normal.x, 0.0, normal.z);
     let sin = max(flat.length(), 1e-6);
@@ -259,8 +261,8 @@ fn wedge(s: f32, cos: f32, sin: f32, low: f32, high: f32) -> (f32, f32, f32) {
     (slope * volume, slope * along, slope * (aside(high) - aside(low)))
 }
 
-/// Like [`wedge`], from `from` to `to` along the axis, by the three-point Gauss rule: if the cut hardly changes, the
-/// differences in [`wedge`] would be rounding.
+/// Like [`wedge`], from `from` to `to` along the axis, by the three-point Gauss rule. Used if the cut hardly changes,
+/// where rounding would dominate the differences in [`wedge`].
 fn wedge_by_rule(from: f32, to: f32, at: impl Fn(f32) -> f32) -> (f32, f32, f32) {
     const NODES: [(f32, f32); 3] =
         [(-0.774_596_67, 0.555_555_56), (0.0, 0.888_888_9), (0.774_596_67, 0.555_555_56)];

@@ -12,9 +12,9 @@ const GAUSS: [(f64, f64); 4] = [
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
 ];
 
-/// Returns the volume and the moment below the surface, for the axis y. Exact to about 1e-5 of the whole. The rule is
-/// applied between the heights at which the surface starts and stops cutting the disks, and smoothed toward both ends,
-/// where the cut part grows with a square root.
+/// Returns the volume and the moment below the water surface of a solid of revolution about y, exact to about 1e-5 of
+/// the whole. The Gauss rule is applied between the heights at which the water surface starts and stops cutting the
+/// disks. A substitution smooths the integrand toward both ends, where the cut part grows like a square root.
 pub(super) fn revolved_below(slices: &[Slice], plane: &WaterPlane) -> Submerged {
     let mut sums = [0.0; 3];
     for slice in slices {
@@ -43,7 +43,7 @@ fn crossings(slice: &Slice, plane: &WaterPlane) -> [f64; 3] {
     if root < 0.0 {
         return [slice.to; 3];
     }
-    // Avoids the difference of nearly equal numbers.
+    // This form of the roots avoids the difference of nearly equal numbers.
     let sum = if q > 0.0 { -(q + root.sqrt()) } else { -q + root.sqrt() };
     let (y0, y1) = (inside(sum / p), inside(r / sum));
     if y0 < y1 { [y0, y1, slice.to] } else { [y1, y0, slice.to] }

@@ -1,5 +1,5 @@
-//! Builds a tree top down. Each part is split where the surface area heuristic is best, by bins (Wald, "On fast
-//! construction of SAH-based bounding volume hierarchies", RT 2007).
+//! Builds a tree from the root down, with splits by the binned surface area heuristic (Wald, "On fast construction of
+//! SAH-based bounding volume hierarchies", RT 2007).
 
 use super::node::{Child, Node, half_area};
 use super::{Place, Tree};
@@ -18,7 +18,7 @@ pub struct Item {
 }
 
 impl Item {
-    /// Twice the centre of the bounds.
+    /// Twice the centre of the bounds, metres; the factor does not matter for comparisons.
     fn middle(&self) -> Vec3 {
         self.bounds.min + self.bounds.max
     }
@@ -41,7 +41,7 @@ impl Tree {
         let most = items.iter().fold(0, |most, item| u32::max(most, item.leaf)) as usize;
         self.places.reserve_exact((most + 1).saturating_sub(self.places.len()));
         self.make_room(most as u32);
-        // Nodes of the lowest level are full; the levels above add about a fifth.
+        // Nodes of the lowest level are full; the nodes of the levels above are about a fifth as many.
         let nodes = items.len() / WIDTH + items.len() / (5 * WIDTH) + 1;
         self.nodes.reserve_exact(nodes);
         self.parents.reserve_exact(nodes);
@@ -89,7 +89,7 @@ impl Tree {
     }
 }
 
-/// Orders items so that each range of at most `most` items is compact; returns up to eight ranges, and their number.
+/// Orders items into up to eight compact ranges of at most `most` items each; returns the ranges and their number.
 fn partition(items: &mut [Item], most: usize) -> ([Range<usize>; WIDTH], usize) {
     let mut parts: [Range<usize>; WIDTH] = core::array::from_fn(|_| 0..0);
     parts[0] = 0..items.len();
@@ -101,7 +101,8 @@ fn partition(items: &mut [Item], most: usize) -> ([Range<usize>; WIDTH], usize) 
             return (parts, count);
         }
         let needed: usize = parts[..count].iter().map(|part| part.len().div_ceil(most)).sum();
-        // With a spare slot, a part may be split at any multiple of eight; otherwise only so that no slot is lost.
+        // While slots are spare, a range may be split at any multiple of eight; otherwise only at multiples of `most`,
+        // so that the ranges fit into the slots.
         let unit = if needed < WIDTH { WIDTH } else { most };
         let first = split(&mut items[part.clone()], unit);
         parts[largest] = part.start..part.start + first;
@@ -110,8 +111,8 @@ fn partition(items: &mut [Item], most: usize) -> ([Range<usize>; WIDTH], usize) 
     }
 }
 
-/// Orders items so that the first of them and the rest are split well; returns the number of the first, a multiple of
-/// `unit`.
+/// Splits items into two groups by the surface area heuristic and orders them by group; returns the size of the first
+/// group, a multiple of `unit`.
 fn split(items: &mut [Item], unit: usize) -> usize {
     let (axis, count) = best_split(items);
     let most = (items.len() - 1) / unit * unit;

@@ -1,10 +1,10 @@
-//! Bounding-volume tree with eight boxes per node: finds the leaves that overlap a box, are along a line, or are
+//! Bounding-volume tree with eight boxes per node. It finds the leaves that overlap a box, lie along a line, or are
 //! closest to a point.
 //!
 //! All leaves have the same depth. [`build`](Tree::build) makes a tree by the surface area heuristic with full nodes at
 //! the lowest level; single leaves are inserted and removed as in an R-tree (Guttman, "R-trees: a dynamic index
-//! structure for spatial searching", SIGMOD 1984). The set of query results does not depend on the tree's shape; only
-//! their order does.
+//! structure for spatial searching", SIGMOD 1984). The order of query results depends on the tree's structure; the set
+//! of results does not.
 
 mod build;
 mod node;
@@ -23,7 +23,8 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, WIDTH};
 pub use traversal::{Stop, Traversal};
 
-/// Largest number of levels of nodes, for the queries' stacks. Full nodes hold 2³² leaves in 11 levels.
+/// Largest number of levels of nodes; it sets the size of the queries' stacks. With full nodes, 11 levels hold 2³²
+/// leaves.
 const MOST_LEVELS: usize = 14;
 
 /// Position of a child: index of the node times eight, plus slot.
@@ -31,7 +32,7 @@ const MOST_LEVELS: usize = 14;
 struct Place(u32);
 
 impl Place {
-    /// Position of a leaf that is not in the tree, and of the root in its parent.
+    /// Value for a leaf that is not in the tree, and for the root, which has no parent.
     const NOWHERE: Self = Self(u32::MAX);
 
     fn new(node: u32, slot: usize) -> Self {
@@ -143,13 +144,14 @@ impl Tree {
         }
     }
 
-    /// True if a rebuild pays: many leaves were inserted one by one, or many nodes are nearly empty.
+    /// True if a rebuild would make queries notably faster: many leaves were inserted one by one, or many nodes are
+    /// nearly empty.
     pub fn is_worn(&self) -> bool {
         let used = self.nodes.len() - self.free.len();
         (self.inserted > 64 && self.inserted > self.len) || used > self.len / 2 + MOST_LEVELS
     }
 
-    /// Reserves memory for this many leaves, independent of later changes.
+    /// Reserves memory for this many leaves, enough for any structure of the tree.
     pub fn reserve(&mut self, leaves: usize) {
         let nodes = leaves + MOST_LEVELS;
         self.nodes.reserve(nodes.saturating_sub(self.nodes.len()));
@@ -230,7 +232,7 @@ impl Tree {
         other
     }
 
-    /// Updates the boxes of a node in its ancestors.
+    /// Recomputes the bounds of a node and its ancestors in their parents.
     fn refit(&mut self, mut node: u32) {
         loop {
             let parent = self.parents[node as usize];
@@ -267,7 +269,7 @@ impl Kernel for Descent<'_> {
             let own = &mut self.tree.nodes[node as usize];
             let slot = own.least_growth(&bounds);
             own.set_bounds(slot, &own.bounds(slot).merge(self.bounds));
-            node = own.child(slot).get().expect_err("nodes above the lowest hold nodes");
+            node = own.child(slot).get().expect_err("nodes above the lowest level contain nodes");
         }
         node
     }
@@ -276,8 +278,8 @@ impl Kernel for Descent<'_> {
 /// Smallest number of children of a node after a split.
 const FEWEST: usize = 3;
 
-/// Orders children so that the first of them and the rest have the least surface together; returns the number of the
-/// first.
+/// Splits children into two groups with the least total surface area and orders them by group; returns the size of the
+/// first group.
 fn divide(all: &mut [(Aabb, Child); WIDTH + 1]) -> usize {
     let mut best = (f32::INFINITY, 0, FEWEST);
     for axis in 0..3 {

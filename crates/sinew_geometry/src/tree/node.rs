@@ -1,4 +1,4 @@
-//! A node: eight boxes, stored for SIMD, and their children.
+//! A tree node: eight boxes, stored for SIMD, and their children.
 
 use crate::boxes::Aabb;
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
@@ -49,8 +49,8 @@ impl Child {
     }
 }
 
-/// Eight boxes, row by row, so that a query tests all of them together. Seven registers of eight lanes: no row crosses
-/// a cache line.
+/// Eight boxes stored row by row, so that a query tests all of them together, and their children. A node fills seven
+/// rows of eight lanes; no row crosses a cache line.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Node {
@@ -114,8 +114,8 @@ impl Node {
         self.children.iter().all(|child| child.is_none())
     }
 
-    /// Returns the slot whose box grows least in surface to contain another box; among equals the slot with the least
-    /// surface.
+    /// Returns the slot whose box must grow least in surface area to contain another box; among equals, the slot whose
+    /// box has the least surface area.
     #[inline(always)]
     pub fn least_growth<L: Lanes>(&self, other: &[L; 6]) -> usize {
         let mut low = [L::splat(0.0); 3];
@@ -143,8 +143,8 @@ impl Node {
         best.map_or(0, |(slot, _)| slot)
     }
 
-    /// Iterates over the children in the slots of a mask, lowest slot first. Infinite bounds and overflowing sums match
-    /// empty slots too; these are skipped.
+    /// Iterates over the children in the slots of a mask, lowest slot first. Skips empty slots, which may be in the
+    /// mask because infinite bounds and overflowing sums match them.
     #[inline(always)]
     pub fn held(&self, mut mask: u8) -> impl Iterator<Item = (usize, Child)> {
         let next_slot = move || {
@@ -179,7 +179,7 @@ impl Node {
         let mut last = L::splat(f32::INFINITY);
         for axis in 0..3 {
             let inverse = L::splat(line.inverse[axis]);
-            // NaN, for a line in the plane of a face, leaves the value unchanged.
+            // A line in the plane of a face gives NaN, which leaves the value unchanged.
             first = L::max(self.beyond::<L>(&line.near, axis) * inverse, first);
             last = L::min(self.beyond::<L>(&line.far, axis) * inverse, last);
         }
@@ -222,8 +222,9 @@ fn half_area_of<L: Lanes>([x, y, z]: &[L; 3]) -> L {
     *x * *y + *y * *z + *z * *x
 }
 
-/// Relative widening of boxes and lines. With it, an exact test with rounding never finds a hit that the boxes exclude
-/// (as in Ize, "Robust BVH ray traversal", JCGT 2013, for tests whose error is that of positions, not of boxes).
+/// Relative widening of boxes and lines. It exceeds the rounding error of the exact tests, so that a query never skips
+/// a leaf that its exact test would hit (compare Ize, "Robust BVH ray traversal", JCGT 2013, where only the rounding of
+/// the box test counts).
 pub const PAD: f32 = 4e-6;
 
 /// A line prepared for the slab test (Kay & Kajiya 1986), with known near and far faces.

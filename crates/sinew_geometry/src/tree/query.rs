@@ -1,5 +1,5 @@
-//! Tree queries. Each traverses nodes with a fixed stack, without allocation, and calls the closure with every
-//! candidate leaf; the closure makes the exact test.
+//! Tree queries. Each query traverses the nodes with a fixed stack, without allocation, and calls a closure with every
+//! candidate leaf; the closure performs the exact test.
 
 use super::Tree;
 use super::node::Line;
@@ -41,7 +41,7 @@ impl Tree {
     }
 
     /// Visits every leaf whose bounds are within `distance` (metres) of a point; within a node the nearer boxes come
-    /// first. `visit` returns the new limit of the distance.
+    /// first. `visit` returns the new limit of the distance, metres, ≥ 0.
     pub fn nearest(&self, point: Vec3, distance: f32, visit: impl FnMut(u32) -> f32) {
         if let Some(root) = self.root {
             dispatch::run(Nearest { tree: self, root, point, distance, visit });
@@ -132,7 +132,7 @@ impl<V: FnMut(u32) -> f32> Kernel for Nearest<'_, V> {
         let far = self.point.abs();
         let pad = super::PAD * sinew_math::max(far.x, sinew_math::max(far.y, far.z));
         let point = self.point.to_array().map(L::splat);
-        // Square of a distance, enlarged by rounding.
+        // Square of a distance, enlarged to cover rounding errors.
         let square = |distance: f32| distance * distance * (1.0 + super::PAD);
         let mut limit = square(self.distance);
         let mut waiting = Waiting::new(self.root);

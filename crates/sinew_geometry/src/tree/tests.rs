@@ -98,7 +98,7 @@ impl Pair {
         found
     }
 
-    fn tried(&self, holds: impl Fn(&Aabb) -> bool) -> Vec<u32> {
+    fn brute_force(&self, holds: impl Fn(&Aabb) -> bool) -> Vec<u32> {
         let leaves = self.leaves.iter().enumerate();
         let held = leaves.filter(|(_, bounds)| bounds.as_ref().is_some_and(&holds));
         held.map(|(leaf, _)| leaf as u32).collect()
@@ -107,7 +107,7 @@ impl Pair {
     fn ask(&self, random: &mut Random, scale: f32) {
         use crate::boxes::Overlap;
         let query = some_box(random, scale);
-        assert_eq!(self.overlapping(&query), self.tried(|bounds| bounds.overlaps(&query)));
+        assert_eq!(self.overlapping(&query), self.brute_force(|bounds| bounds.overlaps(&query)));
         let mut direction = random.in_cube() * 2.0 * scale;
         if random.index(4) == 0 {
             direction[random.index(3)] = 0.0;
@@ -123,7 +123,7 @@ impl Pair {
             met.push(leaf);
             sweep.limit
         });
-        let missing = self.tried(|bounds| meets(bounds, &sweep));
+        let missing = self.brute_force(|bounds| meets(bounds, &sweep));
         assert!(missing.iter().all(|leaf| met.contains(leaf)), "{sweep:?}: {missing:?}, met {met:?}");
         let distance = scale * random.unit();
         let mut near = Vec::new();
@@ -131,7 +131,7 @@ impl Pair {
             near.push(leaf);
             distance
         });
-        let missing = self.tried(|bounds| {
+        let missing = self.brute_force(|bounds| {
             let outside = (bounds.min - sweep.origin).max(sweep.origin - bounds.max).max(Vec3::ZERO);
             outside.as_dvec3().length() <= f64::from(distance)
         });
@@ -200,7 +200,7 @@ fn large_tree_has_full_nodes_and_finds_every_leaf() {
     }
 }
 
-/// A row of boxes, inserted in order, does not make a deep tree.
+/// Inserts a row of boxes in order.
 #[test]
 fn leaves_in_a_row_give_a_shallow_tree() {
     let mut tree = Tree::default();
@@ -213,9 +213,8 @@ fn leaves_in_a_row_give_a_shallow_tree() {
     assert!(used < 10_000 / 3, "{used} nodes");
 }
 
-/// All queries find infinite boxes, and the other boxes as before.
 #[test]
-fn infinite_boxes_are_handled() {
+fn queries_find_infinite_boxes_and_the_other_boxes() {
     let mut random = Random::new(3);
     let mut pair = Pair { tree: Tree::default(), leaves: Vec::new() };
     for i in 0..200 {
@@ -233,7 +232,7 @@ fn infinite_boxes_are_handled() {
     pair.ask(&mut random, 10.0);
 }
 
-/// Unbounded queries find every leaf and no empty slot.
+/// Empty slots of nodes must not be reported.
 #[test]
 fn infinite_queries_find_every_leaf_once() {
     let mut random = Random::new(4);

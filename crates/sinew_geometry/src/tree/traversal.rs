@@ -1,4 +1,5 @@
-//! Traversals of lines that can be interleaved: while one line waits for memory or a branch, the others proceed.
+//! Interleaved traversal: traversals of several lines take turns, so that the processor works on other lines while one
+//! waits for memory or a mispredicted branch.
 
 use super::node::Line;
 use super::waiting::Waiting;
@@ -9,7 +10,7 @@ use sinew_math::lanes::{Lanes, WIDTH};
 /// State of one line: its limit and its pending children.
 pub struct Traversal {
     line: Line,
-    /// Fraction beyond which hits do not count, ≥ 0.
+    /// Fraction beyond which hits are ignored, ≥ 0.
     pub limit: f32,
     waiting: Waiting,
 }
@@ -31,7 +32,7 @@ impl Traversal {
         Self { line, limit: 0.0, waiting: Waiting::NONE }
     }
 
-    /// Starts the traversal of a tree by another sweep.
+    /// Starts a new traversal, of a tree along a sweep.
     #[inline(always)]
     pub fn start(&mut self, tree: &Tree, sweep: &Sweep) {
         let Sweep { origin, direction, half_extents, limit } = *sweep;

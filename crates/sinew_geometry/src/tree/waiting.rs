@@ -4,14 +4,15 @@ use super::MOST_LEVELS;
 use super::node::{Child, Node};
 use sinew_math::lanes::WIDTH;
 
-/// Capacity for pending children: on each level all children of a node but one. A power of two, so that a mask keeps
-/// indices in range.
+/// Capacity for pending children: all children of a node but one on each level. It is a power of two, so that a mask
+/// keeps indices in range.
 pub(super) const STACK: usize = ((WIDTH - 1) * MOST_LEVELS + 1).next_power_of_two();
 pub(super) const MASK: usize = STACK - 1;
 
 /// Pending children with their sort keys; the last one is visited next.
 pub(super) struct Waiting {
-    /// Bits of the key above those of the child: for non-negative keys the bits sort like the keys.
+    /// Entries: the bits of the key in the high half, the bits of the child in the low half. The bits of non-negative
+    /// keys sort like the keys.
     children: [u64; STACK],
     count: usize,
 }
@@ -58,8 +59,8 @@ impl Waiting {
         }
     }
 
-    /// Pushes the slots of a mask. Up to two slots, the usual case, are pushed without a branch, which would be
-    /// mispredicted half of the time. An empty slot may be among them.
+    /// Pushes the slots of a mask. Up to two slots, the usual case, are pushed without a branch, because a branch would
+    /// be mispredicted half of the time. Pushes empty slots too if they are in the mask.
     #[inline(always)]
     pub fn push_few(&mut self, node: &Node, mask: u8, keys: &[f32; WIDTH]) {
         let rest = mask & mask.wrapping_sub(1);
@@ -70,7 +71,7 @@ impl Waiting {
             let slot = mask.trailing_zeros() as usize % WIDTH;
             entry(keys[slot], node.child(slot))
         });
-        // Without a second slot, 0 is the smallest entry, and it is beyond the count.
+        // If the mask has no second slot, its entry is 0, which sorts first and is beyond the count.
         let b = if rest != 0 { b } else { 0 };
         self.children[self.count & MASK] = u64::max(a, b);
         self.children[(self.count + 1) & MASK] = u64::min(a, b);

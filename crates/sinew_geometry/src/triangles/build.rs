@@ -141,10 +141,10 @@ fn active_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
     let mut active = vec![0_u8; triangles.len()];
     for around in sides.chunk_by(|p, q| p.edge == q.edge) {
         for side in around {
-            // Among several triangles at an edge, the one that continues most nearly straight decides.
+            // If several triangles share the edge, the one whose continuation bends least decides.
             let beyond = around.iter().filter(|other| other.forward != side.forward);
-            let felt = beyond.map(|other| is_felt(&corners(side.triangle), &corners(other.triangle)));
-            if felt.reduce(|a, b| a && b).unwrap_or(true) {
+            let bends = beyond.map(|other| bends_down(&corners(side.triangle), &corners(other.triangle)));
+            if bends.reduce(|a, b| a && b).unwrap_or(true) {
                 active[side.triangle as usize] |= 1 << side.corner;
             }
         }
@@ -153,7 +153,7 @@ fn active_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
 }
 
 /// True if the edge between two triangles is active: the surface bends down there.
-pub(super) fn is_felt(triangle: &[Vec3; 3], beyond: &[Vec3; 3]) -> bool {
+pub(super) fn bends_down(triangle: &[Vec3; 3], beyond: &[Vec3; 3]) -> bool {
     let (n, m) = (triangle::normal(triangle), triangle::normal(beyond));
     let middle = |&[a, b, c]: &[Vec3; 3]| (a + b + c) * (1.0 / 3.0);
     // The centroid of each triangle must be below the other triangle; both are tested, so that rounding does not give

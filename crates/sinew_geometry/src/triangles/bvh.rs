@@ -7,7 +7,7 @@ use sinew_math::{Vec3, max, max3, min};
 
 /// Largest number of triangles in a leaf.
 const LEAF: usize = 4;
-/// Stack size: more levels than a balanced tree of 2³² leaves has.
+/// Stack size, larger than the number of levels of a balanced tree with 2³² leaves.
 pub(crate) const DEPTH: usize = 40;
 
 /// Binary tree of the bounds of triangles. Leaves hold index ranges in the order of triangles after [`Tree::new`].
@@ -79,15 +79,15 @@ impl Tree {
         });
     }
 
-    /// Calls `visit` with the leaves that may be within a squared distance of `p`, nearer ones first. The squared
-    /// distance is `square` at first, then the last result of `visit`, m².
+    /// Calls `visit` with the leaves that may be within a squared distance of `p`, nearer leaves first. The limit of
+    /// the squared distance is `square` (m²) at first, then the last result of `visit`.
     pub fn nearest(&self, p: Vec3, square: f32, visit: impl FnMut(Range<u32>) -> f32) {
         let away = |bounds: &Aabb| max3(max3(bounds.min - p, p - bounds.max), Vec3::ZERO).length_squared();
         self.walk(square, away, visit);
     }
 
-    /// Calls `visit` with the leaves that a line from `origin` may enter before a share of `direction`, nearer ones
-    /// first. The share is `share` at first, then the last result of `visit`.
+    /// Calls `visit` with the leaves that a line from `origin` may enter before a limit, nearer leaves first. The limit
+    /// is a share of `direction`: `share` at first, then the last result of `visit`.
     pub fn along(&self, origin: Vec3, direction: Vec3, share: f32, visit: impl FnMut(Range<u32>) -> f32) {
         self.walk(share, |bounds| enter(bounds, origin, direction), visit);
     }
@@ -122,7 +122,7 @@ impl Tree {
 }
 
 /// Share of `direction` at which a line enters the bounds: 0 if it starts inside, infinite if it misses. The bounds are
-/// widened by rounding.
+/// widened to cover rounding errors.
 fn enter(bounds: &Aabb, origin: Vec3, direction: Vec3) -> f32 {
     let (mut first, mut last) = (0.0, f32::INFINITY);
     for k in 0..3 {
@@ -154,7 +154,7 @@ fn grow(numbers: &mut [u32], offset: u32, corners: &impl Fn(u32) -> [Vec3; 3], n
         let [a, b, c] = corners(*i);
         a[axis] + b[axis] + c[axis]
     };
-    // Splits into halves by number, so that the tree is balanced for every mesh.
+    // Both halves have the same number of triangles, so that the tree is balanced for every mesh.
     let half = numbers.len() / 2;
     numbers.select_nth_unstable_by(half, |i, j| middle(i).total_cmp(&middle(j)).then(i.cmp(j)));
     let (low, high) = numbers.split_at_mut(half);

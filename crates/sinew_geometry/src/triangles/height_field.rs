@@ -1,6 +1,6 @@
 //! Height fields as shapes: terrain over a grid.
 
-use super::build::is_felt;
+use super::build::bends_down;
 use super::triangle::{Triangle, bounds, closest_on_triangle, enter_triangle};
 use super::{Closest, MAX_COORDINATE};
 use crate::boxes::{Aabb, Overlap};
@@ -18,10 +18,10 @@ pub struct HeightFieldDef {
     pub rows: usize,
     /// Distance between neighbours along x and along z, metres, > 0.
     pub spacing: [f32; 2],
-    /// Heights, metres: `columns × rows` of them, row by row. The height of column i and row j is at x = i × spacing.0,
-    /// z = j × spacing.1.
+    /// Heights, metres: `columns × rows` values, row by row. The vertex of column i and row j is at x = i × spacing.0
+    /// and z = j × spacing.1.
     pub heights: Vec<f32>,
-    /// Indices of missing cells: `column + row × (columns − 1)`.
+    /// Indices of cells without triangles: `column + row × (columns − 1)`.
     pub holes: Vec<u32>,
 }
 
@@ -58,7 +58,7 @@ pub enum HeightFieldError {
         /// Index of the height in the list.
         index: usize,
     },
-    /// A hole refers to a missing cell.
+    /// The index of a hole is out of range.
     Hole {
         /// Index of the cell.
         hole: u32,
@@ -110,7 +110,7 @@ impl HeightField {
     /// If a number of the definition is invalid.
     pub fn new(mut def: HeightFieldDef) -> Result<Self, HeightFieldError> {
         check(&def)?;
-        // Sorted, so that the order of holes does not matter.
+        // The holes are sorted, so that their order in the definition does not matter.
         def.holes.sort_unstable();
         def.holes.dedup();
         let lowest = def.heights.iter().fold(f32::INFINITY, |y, &h| min(h, y));
@@ -206,8 +206,8 @@ impl HeightField {
             for half in 0..2 {
                 let triangle = 2 * cell as u32 + half;
                 for (edge, beyond) in self.beyond(triangle).into_iter().enumerate() {
-                    let felt = |other| is_felt(&self.corners(triangle), &self.corners(other));
-                    if beyond.is_none_or(felt) {
+                    let bends = |other| bends_down(&self.corners(triangle), &self.corners(other));
+                    if beyond.is_none_or(bends) {
                         self.cells[cell] |= 1 << (3 * half as usize + edge);
                     }
                 }
@@ -247,8 +247,8 @@ impl HeightField {
         }
     }
 
-    /// Like [`Surface::closest`](super::Surface::closest). Searches growing boxes around the point until the closest
-    /// point is nearer than the sides of the box.
+    /// Like [`Surface::closest`](super::Surface::closest). Searches boxes of growing size around the point until the
+    /// closest point is nearer than the sides of the box.
     pub(super) fn closest(&self, p: Vec3, reach: f32) -> Option<Closest> {
         let nearest = sinew_math::max3(sinew_math::min3(p, self.bounds.max), self.bounds.min);
         let least = (nearest - p).length();

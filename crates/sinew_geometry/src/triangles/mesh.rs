@@ -34,7 +34,7 @@ pub enum MeshError {
         /// Index of the vertex.
         vertex: usize,
     },
-    /// More triangles than [`MAX_TRIANGLES`], or more than three vertices for each of that many.
+    /// More triangles than [`MAX_TRIANGLES`], or more vertices than three times [`MAX_TRIANGLES`].
     TooMany {
         /// Number of given triangles.
         triangles: usize,
@@ -60,8 +60,7 @@ impl core::error::Error for MeshError {}
 /// Surface of triangles for levels; each triangle is solid on the side from which its corners are counter-clockwise.
 /// The surface may be open and need not enclose a volume.
 ///
-/// Internal edges are inactive: only edges at which the surface bends down by more than 5°, and its rim, cause
-/// contacts.
+/// Internal edges are inactive: only the surface's rim and edges at which it bends down by more than 5° cause contacts.
 #[derive(Clone, Debug)]
 pub struct Mesh {
     vertices: Vec<Vec3>,
@@ -141,7 +140,7 @@ impl Mesh {
         self.faces.len()
     }
 
-    /// Returns the numbers of dropped triangles.
+    /// Returns how many triangles were dropped, by reason.
     pub fn dropped(&self) -> Dropped {
         self.dropped
     }

@@ -47,12 +47,14 @@ pub struct Closest {
 }
 
 impl Closest {
-    /// Returns the distance, metres, negative behind the surface, and the unit outward direction.
+    /// Returns the signed distance of the query point `p`, metres, negative behind the surface, and the unit outward
+    /// normal at the closest point.
     pub fn signed(&self, p: Vec3) -> (f32, Vec3) {
         let (away, distance) = (p - self.point, self.square.sqrt());
         let height = self.triangle.height(p);
         let sign = if height < 0.0 { -1.0 } else { 1.0 };
-        // Over a face, the normal is that of the face. The direction between nearly coincident points is rounding.
+        // If a face is closest, or if rounding dominates the direction between the points, the triangle's normal is
+        // used.
         let precise = distance > 1e-5 * (1.0 + p.length());
         match self.part {
             Part::Face => (height, self.triangle.normal),
@@ -61,8 +63,8 @@ impl Closest {
         }
     }
 
-    /// Replaces `best` if the new point is nearer. For a point that several triangles share, the triangle whose plane
-    /// is furthest from `p` decides the side.
+    /// Replaces `best` if the new point is nearer. If several triangles share the closest point, the triangle whose
+    /// plane is furthest from `p` is used, because it decides correctly whether `p` is in front of the surface.
     fn improve(
         best: &mut Option<Self>,
         p: Vec3,

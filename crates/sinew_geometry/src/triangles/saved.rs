@@ -24,7 +24,7 @@ impl Mesh {
         }
     }
 
-    /// Reads the format of [`save`](Self::save) into an equal mesh, with the same hash.
+    /// Reads the bytes that [`save`](Self::save) writes. The result equals the saved mesh and has the same hash.
     ///
     /// # Errors
     /// If the bytes are not those of a mesh.
@@ -67,7 +67,8 @@ impl HeightField {
         def.holes.iter().for_each(|&hole| w.u32(hole));
     }
 
-    /// Reads the format of [`save`](Self::save) into an equal height field, with the same hash.
+    /// Reads the bytes that [`save`](Self::save) writes. The result equals the saved height field and has the same
+    /// hash.
     ///
     /// # Errors
     /// If the bytes are not those of a height field.

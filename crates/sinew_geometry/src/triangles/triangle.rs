@@ -110,8 +110,8 @@ pub fn closest_on_triangle(corners: &[Vec3; 3], p: Vec3) -> (Vec3, Part) {
 /// Returns the share of `direction` (≥ 0, may exceed 1) at which a line from `origin` enters a triangle from its
 /// outside.
 ///
-/// Uses the sign of the line's rotation around each side. For the neighbouring triangle this sign is exactly opposite,
-/// so no line passes between two triangles.
+/// The line crosses the triangle if it passes all sides with the same orientation. For the neighbouring triangle, the
+/// sign of the orientation at the common side is exactly opposite, so no line passes between two triangles.
 pub(crate) fn enter_triangle(corners: &[Vec3; 3], origin: Vec3, direction: Vec3) -> Option<f32> {
     let [a, b, c] = corners.map(|corner| corner - origin);
     let beside = |p: Vec3, q: Vec3| direction.dot(p.cross(q));

@@ -11,7 +11,8 @@ fn unit_box(center: Vec3, rotation: Rotation) -> Placed {
     Placed { shape: Shape::Box { half_extents: Vec3::splat(0.5) }, frame: Transform::new(center, rotation) }
 }
 
-/// A box 1 mm inside another touches at its four corners; rotated, at four of the eight corners of an octagon.
+/// A box that overlaps another by 1 mm touches at its four corners; rotated by 45°, at four of the eight corners of an
+/// octagon.
 #[test]
 fn box_on_box_touches_at_four_corners() {
     let below = unit_box(Vec3::ZERO, Rotation::IDENTITY);
@@ -61,7 +62,7 @@ fn small_box_on_large_box_touches_at_its_own_corners() {
     }
 }
 
-/// Two boxes edge over edge, crossed: one point, at the crossing.
+/// Two boxes whose edges cross touch at one point, at the crossing.
 #[test]
 fn crossed_edges_touch_at_one_point() {
     let eighth = core::f32::consts::FRAC_PI_4;
@@ -81,7 +82,7 @@ fn crossed_edges_touch_at_one_point() {
 
 /// Boxes that pass each other near a corner have the distance of the corners as separation, and no distant points.
 #[test]
-fn corners_that_pass_each_other_touch_at_the_corners() {
+fn boxes_nearest_at_corners_have_contacts_at_those_corners() {
     let a = unit_box(Vec3::ZERO, Rotation::IDENTITY);
     let b = unit_box(Vec3::splat(1.01), Rotation::IDENTITY);
     let m = a.collide(&b, 0.02);
@@ -91,7 +92,7 @@ fn corners_that_pass_each_other_touch_at_the_corners() {
     assert_eq!(a.collide(&b, 0.017).count, 0);
 }
 
-/// A capsule that overhangs a box: one point at its end, one at the edge of the box.
+/// A capsule that overhangs a box has one point at its end and one at the edge of the box.
 #[test]
 fn capsule_on_box_touches_along_a_line() {
     let ground = unit_box(Vec3::ZERO, Rotation::IDENTITY);

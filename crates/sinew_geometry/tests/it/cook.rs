@@ -118,7 +118,7 @@ fn rotated_box_becomes_one_equal_box() {
 #[test]
 fn l_shape_becomes_two_boxes() {
     let outline = [[0.0, 0.0], [1.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
-    // The corner on the lower edge is on no side of the left piece: as modelled by hand, not by an exporter.
+    // The corner on the lower edge is not a corner of the left piece, as in meshes modelled by hand.
     let mesh = Mesh::prism(&outline, &[&[0, 1, 4, 5, 6], &[1, 2, 3, 4]], 1.5);
     let cooked = mesh.cook(150);
     assert_eq!(cooked.boxes.len(), 2, "{cooked:?}");
@@ -262,7 +262,7 @@ fn room_with_inward_faces_stays_hollow() {
 }
 
 #[test]
-fn shell_is_filled_only_if_that_is_closer() {
+fn open_shell_is_filled_only_if_boxes_inside_are_closer_than_plates() {
     let bottom = [2];
     let mut house = Mesh::default();
     house.block(Vec3::ZERO, Vec3::new(2.0, 2.0, 2.0), Rotation::IDENTITY, &bottom);
@@ -347,7 +347,7 @@ fn invalid_meshes_are_rejected_with_their_place() {
 }
 
 #[test]
-fn degenerate_and_repeated_triangles_are_left_out() {
+fn degenerate_and_repeated_triangles_are_dropped() {
     let mut mesh = Mesh::default();
     mesh.block(Vec3::ZERO, Vec3::ONE, Rotation::IDENTITY, &[]);
     let (first, last) = (mesh.triangles[0], mesh.triangles[11]);

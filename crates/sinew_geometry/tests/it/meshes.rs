@@ -298,7 +298,9 @@ fn terrain_distance_equals_that_of_the_nearest_triangle() {
                 }
             }
         }
-        println!("kind {kind}: {off} of {apart} apart are off, of {deep} deep {lost} are not felt");
+        println!(
+            "kind {kind}: {off} of {apart} separated points are wrong, {lost} of {deep} points inside have no contact"
+        );
         assert!(
             apart * 10 > cases(100_000) && deep * 10 > cases(100_000),
             "{apart} separated, {deep} overlapping pairs"

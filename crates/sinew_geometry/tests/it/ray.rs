@@ -20,7 +20,7 @@ const SHAPES: [Shape; 11] = [
 
 /// Bounded shapes: all except the half-space.
 fn solids() -> &'static [Shape] {
-    SHAPES.split_last().expect("there are shapes").1
+    SHAPES.split_last().expect("the list has shapes").1
 }
 
 fn from_axis(p: Vec3) -> f32 {
@@ -194,7 +194,7 @@ fn surface_point(shape: &Shape, random: &mut Random) -> Option<Vec3> {
     Some(inside)
 }
 
-/// Volume, mass and inertia equal integration over a grid; also shifted, rotated and combined.
+/// Compares volume, mass and inertia with sums over a grid.
 #[test]
 fn mass_properties_match_integration() {
     const CELLS: i32 = 80;

@@ -96,7 +96,7 @@ fn submerged_and_dry_parts_sum_to_the_whole() {
 }
 
 #[test]
-fn cut_tetrahedron_has_the_volume_of_the_cube_of_its_height() {
+fn submerged_tetrahedron_lacks_the_volume_of_its_dry_tip() {
     let [o, x, y, z] = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
     let faces = [[o, y, x], [o, z, y], [o, x, z], [x, y, z]].map(<[Vec3; 3]>::into_iter);
     for height in [0.1f32, 0.5, 0.9] {

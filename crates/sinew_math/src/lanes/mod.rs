@@ -5,8 +5,8 @@
 //! are exact by IEEE 754, and the rest are comparisons and selections. There is no fused multiply-add, no reciprocal
 //! estimate and no sum across lanes.
 //!
-//! The only exception is the sign and payload of a NaN produced by arithmetic. Every processor gets NaN in the same
-//! lanes, but with different bits, so do not store them where bits count.
+//! The only exception is the sign and payload of a NaN that arithmetic produces. Every processor gets NaN in the same
+//! lanes, but with different bits, so do not store NaN in data whose bits are compared.
 //!
 //! Kernels are entered through [`dispatch`](crate::dispatch), which picks the type for [`Lanes`]. Every function that a
 //! kernel calls must be `#[inline(always)]`: a separate call is compiled for the oldest processor and passes its
@@ -138,7 +138,7 @@ pub trait LaneMask: Mask {
 ///
 /// Types of processor registers can only be created by [`dispatch`](crate::dispatch), after it has checked for support.
 pub trait Lanes: Real<Mask: LaneMask> {
-    /// Eight `f64`, for sums that cancel.
+    /// Eight `f64`, for sums in which large terms cancel.
     type Wide: Real;
 
     /// Converts the numbers to `f64`.

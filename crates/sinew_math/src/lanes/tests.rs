@@ -239,7 +239,7 @@ fn bit_k_of_a_mask_is_lane_k() {
 }
 
 #[test]
-fn the_best_level_is_the_last_available_one() {
+fn best_level_is_the_last_available_one() {
     assert_eq!(Level::available().last(), Some(Level::best()));
     assert!(Level::available().any(|level| level == Level::Scalar));
     let has_registers =
@@ -249,7 +249,7 @@ fn the_best_level_is_the_last_available_one() {
 
 #[test]
 #[should_panic = "is not available on this processor"]
-fn a_foreign_level_is_refused() {
+fn run_at_a_level_of_another_processor_panics() {
     let foreign = Level::ALL.into_iter().find(|level| !level.is_available());
     dispatch::run_at(foreign.expect("no processor has them all"), Masks);
 }

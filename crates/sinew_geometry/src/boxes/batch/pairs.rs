@@ -44,9 +44,9 @@ impl Pairs {
         self.0.clear();
     }
 
-    /// Finds the pairs that overlap, by all fifteen axes; the result for each is exactly that of
-    /// [`Overlap::overlaps`](crate::boxes::Overlap::overlaps). Bit `k` of `overlapping[i]` is pair `8 i + k`; bits
-    /// beyond the last pair are 0. A pair with NaN does not overlap.
+    /// Finds the pairs that overlap, by all fifteen axes; the result for each pair is exactly that of
+    /// [`Overlap::overlaps`](crate::boxes::Overlap::overlaps). Bit `k` of `overlapping[i]` is set if pair `8 i + k`
+    /// overlaps; bits beyond the last pair are 0. A pair with NaN does not overlap.
     ///
     /// # Panics
     /// If `overlapping` does not have one byte for every eight pairs, rounded up.
@@ -55,13 +55,14 @@ impl Pairs {
     }
 
     /// Finds, for each pair, the axis among the fifteen with the largest gap or the least overlap; the result is
-    /// exactly that of [`Separation::between`]. `found` is resized to the number of pairs; it allocates only to grow.
+    /// exactly that of [`Separation::between`]. Resizes `found` to the number of pairs, and allocates only if `found`
+    /// must grow.
     pub fn separations(&self, found: &mut Separations) {
         dispatch::run(FindSeparations { pairs: self, axes: Axes::Fifteen, found });
     }
 
-    /// Finds the same among the six face axes, at a third of the cost. The result is at most the true gap if the boxes
-    /// are apart, and at least the true value if they overlap.
+    /// Like [`separations`](Self::separations), for the six face axes only, at a third of the cost. The distance is at
+    /// most that of all fifteen axes: gaps may be underestimated, and depths overestimated.
     pub fn face_separations(&self, found: &mut Separations) {
         dispatch::run(FindSeparations { pairs: self, axes: Axes::Faces, found });
     }
@@ -123,7 +124,11 @@ impl Kernel for FindOverlaps<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let blocks = self.pairs.0.blocks();
-        assert_eq!(self.overlapping.len(), blocks.len(), "one byte for every eight pairs");
+        assert_eq!(
+            self.overlapping.len(),
+            blocks.len(),
+            "`overlapping` must have one byte for every eight pairs"
+        );
         for (pair, overlapping) in blocks.iter().zip(&mut *self.overlapping) {
             let (a, b) = load::<L>(pair);
             let boxes = FifteenAxes::new((a.center, a.axes(), a.half), (b.center, b.axes(), b.half));

@@ -65,8 +65,8 @@ impl From<&[Vec3]> for Points {
 }
 
 impl Obb {
-    /// Finds the points in the box or on its surface. Bit `k` of `inside[i]` is point `8 i + k`; bits beyond the last
-    /// point are 0. A point with NaN is outside.
+    /// Finds the points in the box or on its surface. Bit `k` of `inside[i]` is set if point `8 i + k` is inside; bits
+    /// beyond the last point are 0. A point with NaN is outside.
     ///
     /// # Panics
     /// If `inside` does not have one byte for every eight points, rounded up.
@@ -74,8 +74,8 @@ impl Obb {
         dispatch::run(ContainsPoints { obb: self, points, inside });
     }
 
-    /// Computes each point's distance from the box's surface, metres, negative inside; exact except for rounding, for
-    /// distances up to 1e19 m. NaN for a point with NaN.
+    /// Computes each point's distance from the box's surface, metres, negative inside. The distance is exact except for
+    /// rounding, up to 1e19 m; it is NaN for a point with NaN.
     ///
     /// # Panics
     /// If `distances` is not as long as `points`.
@@ -84,7 +84,7 @@ impl Obb {
     }
 }
 
-/// A box in the form that the formulas use.
+/// A box with its axes computed, repeated in every lane.
 struct Placed<R> {
     center: Vector3<R>,
     /// Unit vectors along the box's axes.
@@ -148,7 +148,7 @@ impl Kernel for ContainsPoints<'_> {
     fn run<L: Lanes>(self) {
         let obb = Placed::<L>::new(self.obb);
         let blocks = self.points.0.blocks();
-        assert_eq!(self.inside.len(), blocks.len(), "one byte for every eight points");
+        assert_eq!(self.inside.len(), blocks.len(), "`inside` must have one byte for every eight points");
         for (Block(rows), inside) in blocks.iter().zip(&mut *self.inside) {
             *inside = obb.contains(load(rows)).bits();
         }
@@ -176,7 +176,11 @@ impl Kernel for SignedDistances<'_> {
     fn run<L: Lanes>(self) {
         let obb = Placed::<L>::new(self.obb);
         let blocks = self.points.0.blocks();
-        assert_eq!(self.distances.len(), self.points.len(), "one distance for every point");
+        assert_eq!(
+            self.distances.len(),
+            self.points.len(),
+            "`distances` must have one distance for every point"
+        );
         let (whole, tail) = self.distances.as_chunks_mut::<WIDTH>();
         for (Block(rows), distances) in blocks.iter().zip(&mut *whole) {
             obb.signed_distance(load(rows)).store(distances);

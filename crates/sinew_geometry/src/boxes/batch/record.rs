@@ -3,7 +3,7 @@
 use crate::boxes::Obb;
 use sinew_math::lanes::{Lanes, Real, Vector3, WIDTH};
 
-/// Number of numbers in a [`Record`].
+/// Number of values in a [`Record`].
 pub const NUMBERS: usize = 10;
 
 /// A box as numbers, or one box per SIMD lane; metres.
@@ -51,7 +51,7 @@ impl<L: Lanes> Record<L> {
 }
 
 impl<R: Real> Record<R> {
-    /// Converts a direction to the box's frame, with the bits of `Rotation`.
+    /// Converts a direction to the box's frame, with the same bits as `Rotation` computes.
     #[inline(always)]
     pub fn inverse_vector(&self, direction: Vector3<R>) -> Vector3<R> {
         let back = -self.vector;
@@ -59,7 +59,7 @@ impl<R: Real> Record<R> {
         direction + t * self.w + back.cross(t)
     }
 
-    /// Converts a point to the box's frame, with the bits of `Transform::inverse_point`.
+    /// Converts a point to the box's frame, with the same bits as `Transform::inverse_point`.
     #[inline(always)]
     pub fn inverse_point(&self, point: Vector3<R>) -> Vector3<R> {
         self.inverse_vector(point - self.center)
@@ -73,12 +73,12 @@ impl<R: Real> Record<R> {
     }
 }
 
-/// Returns the matrix of a rotation, by rows, with the bits of `Rotation::to_mat3`.
+/// Returns the rows of a rotation's matrix, with the same bits as `Rotation::to_mat3`.
 #[inline(always)]
 pub(super) fn matrix<R: Real>(vector: Vector3<R>, w: R) -> [[R; 3]; 3] {
     let Vector3 { x, y, z } = vector;
     let one = R::splat(1.0);
-    // Twice a product equals the product with twice a factor, exactly.
+    // Doubling is exact, so doubling a factor gives the same bits as doubling the product.
     let (x2, y2, z2) = (x + x, y + y, z + z);
     let (xx, yy, zz) = (x * x2, y * y2, z * z2);
     let (xy, xz, yz) = (x * y2, x * z2, y * z2);

@@ -6,9 +6,9 @@ use crate::boxes::Obb;
 use sinew_math::Vec3;
 use sinew_math::lanes::Real;
 
-/// Squared sine below which two edges count as parallel. Skipping their axis changes the distance by at most the sine
-/// times the boxes' size; using it, by the rounding error divided by the sine. At a sine of 1e-3 neither error exceeds
-/// 1e-3 of the boxes' size.
+/// Squared sine below which two edges count as parallel and their axis is skipped. Skipping the axis changes the
+/// distance by up to the sine times the boxes' size. Using the axis would change the distance by up to the rounding
+/// error divided by the sine. At this sine, 1e-3, both errors are at most 1e-3 of the boxes' size.
 const PARALLEL: f32 = 1e-6;
 
 /// Axis with the largest gap or the least overlap of two boxes, and the distance along it.
@@ -18,28 +18,28 @@ pub struct Separation {
     /// displacement of B by this length along [`direction`](SeparatingAxis::direction). NaN if a number of the boxes is
     /// NaN; unreliable if one is infinite.
     ///
-    /// A gap is at most the boxes' distance: less if their closest points are two corners, or a corner and an edge. It
-    /// is exact except for rounding, unless edges are within a milliradian of parallel: then the error may be that
-    /// angle times the boxes' size.
+    /// The gap is a lower bound of the boxes' distance: it is smaller if the closest points are two corners, or a
+    /// corner and a point of an edge. The gap is exact except for rounding, unless edges are within a milliradian of
+    /// parallel: then the error may be a milliradian times the boxes' size.
     pub distance: f32,
-    /// First of the best axes, in the order of [`SeparatingAxis`].
+    /// Axis with this gap; the first in the order of [`SeparatingAxis`] if several axes are equally good.
     pub axis: SeparatingAxis,
 }
 
 /// One of the fifteen directions that decide whether two boxes overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SeparatingAxis {
-    /// Normal of face 0, 1 or 2 of A, by its axis.
+    /// Axis 0, 1 or 2 of A, the normal of two of its faces.
     FaceOfA(u8),
-    /// Normal of face 0, 1 or 2 of B, by its axis.
+    /// Axis 0, 1 or 2 of B, the normal of two of its faces.
     FaceOfB(u8),
     /// Cross product of this axis of A and this axis of B.
     Edges(u8, u8),
 }
 
 impl SeparatingAxis {
-    /// Returns the axis of an index: three faces of A, three of B, nine pairs of edges, with the axis of B changing
-    /// fastest.
+    /// Returns the axis with an index, 0..=14: three faces of A, three faces of B, then nine pairs of edges in the
+    /// order (0, 0), (0, 1), (0, 2), (1, 0) and so on.
     #[inline]
     pub(super) fn from_index(index: u8) -> Self {
         match index {
@@ -77,7 +77,7 @@ impl Separation {
 /// Best separating axis so far.
 #[derive(Clone, Copy)]
 pub(super) struct Best<R> {
-    /// Gap along the axis, or a monotonic function of it.
+    /// Gap along the axis, or a monotonic function of the gap.
     pub distance: R,
     /// Index of the axis, a small whole number.
     pub index: R,
@@ -94,7 +94,7 @@ impl<R: Real> Best<R> {
     #[inline(always)]
     fn try_axis(&mut self, distance: R, index: usize) {
         let is_better = R::gt(distance, self.distance);
-        // Indices rise, so the maximum is the last one chosen; that is cheaper than a selection.
+        // Indices rise, so the maximum is the index chosen last; a maximum is cheaper than a selection.
         self.index = R::max(R::splat(index as f32).masked(is_better), self.index);
         self.distance = R::max(distance, self.distance);
     }
@@ -106,7 +106,7 @@ pub(super) struct Relative<R> {
     half_b: [R; 3],
     /// Centre of B along the axes of A.
     offset: [R; 3],
-    /// `cosine[i][j]` is axis `i` of A times axis `j` of B.
+    /// `cosine[i][j]` is the dot product of axis `i` of A and axis `j` of B.
     cosine: [[R; 3]; 3],
 }
 
@@ -130,8 +130,8 @@ impl<R: Real> Relative<R> {
         }
     }
 
-    /// Returns the best of the six face axes: a lower bound of the gap, never NaN if all numbers of the boxes are
-    /// finite.
+    /// Returns the best of the six face axes. Its distance is a lower bound of that of all axes; it is NaN only if a
+    /// number of the boxes is not finite.
     #[inline(always)]
     pub fn six_faces(&self) -> Best<R> {
         let (best, poison) = self.best_face();
@@ -153,7 +153,7 @@ impl<R: Real> Relative<R> {
         }
     }
 
-    /// Returns the best face axis, and a number that is NaN if any number of the boxes is NaN.
+    /// Returns the best face axis, and a second value that is NaN if any number of the boxes is NaN.
     #[inline(always)]
     fn best_face(&self) -> (Best<R>, R) {
         let (c, t, a, b) = (&self.cosine, &self.offset, &self.half_a, &self.half_b);

@@ -1,7 +1,7 @@
-//! Box against a triangle: separating axes (one of the triangle, three of the box, nine of edges), then the faces or
-//! edges in contact, or the closest points if the shapes pass beside each other.
+//! Box against a triangle: 13 separating axes (the triangle's normal, three face normals of the box, nine cross
+//! products of edges), then the faces or edges in contact, or the closest points if the box is beside the triangle.
 
-use super::{Teller, When};
+use super::{Recorder, When};
 use crate::collide::ManifoldPoint;
 use crate::collide::feature::{self, WHOLE, pair};
 use crate::collide::placed::{PlacedBox, Segment, sign};
@@ -10,10 +10,11 @@ use sinew_math::{Vec3, max, min};
 
 /// Sine below which edges count as parallel.
 const PARALLEL_SINE: f32 = 0.005;
-/// Least cosine between a way out and the triangle's normal, so that no way leads through the triangle.
+/// Least cosine between a separating axis and the triangle's normal, so that no axis pushes the box through the
+/// triangle.
 const LEAST_COSINE: f32 = -0.02;
 
-/// Cosine between a normal and a face of the box above which the face rests on the feature with that normal.
+/// Cosine between the contact normal and the normal of a box face above which the face counts as resting on the edge.
 const LIES_COSINE: f32 = 0.9;
 
 /// A direction from the triangle to the box and the gap along it.
@@ -32,56 +33,56 @@ enum AxisOf {
     Edges(usize, usize),
 }
 
-/// Tests the box; returns the part of the triangle in contact. `gap` is along the triangle's normal, at most the
-/// margin.
-pub(super) fn meet(placed: &PlacedBox, gap: f32, teller: &mut Teller<'_>) -> Option<Part> {
-    let Axes { widest, best } = axes(placed, teller);
-    if widest > teller.margin {
+/// Records the contact of the box and the triangle; returns the part of the triangle in contact. `gap` is the gap along
+/// the triangle's normal, at most the margin.
+pub(super) fn meet(placed: &PlacedBox, gap: f32, recorder: &mut Recorder<'_>) -> Option<Part> {
+    let Axes { widest, best } = axes(placed, recorder);
+    if widest > recorder.margin {
         return None;
     }
-    let tolerance = teller.solid.tolerance();
+    let tolerance = recorder.solid.tolerance();
     // The triangle's own face is the most stable and represents the surface, so another axis must be clearly better.
-    let told = match best.filter(|best| best.separation > gap + tolerance + 0.05 * max(-gap, 0.0)) {
-        None => face(gap, widest, teller),
-        // The shapes are apart along a direction that leads through the triangle: they pass beside its rim.
+    let found = match best.filter(|best| best.separation > gap + tolerance + 0.05 * max(-gap, 0.0)) {
+        None => face(gap, widest, recorder),
+        // The shapes are apart only along a direction that leads through the triangle: the box is beside its rim.
         Some(axis) if axis.separation <= 0.0 && widest > 0.0 => None,
         Some(axis) => match axis.of {
-            AxisOf::Face(k) => box_face(placed, k, &axis, teller),
-            AxisOf::Edges(i, j) => edges(placed, i, j, &axis, teller),
+            AxisOf::Face(k) => box_face(placed, k, &axis, recorder),
+            AxisOf::Edges(i, j) => edges(placed, i, j, &axis, recorder),
         },
     };
-    if told.is_some() {
-        return told;
+    if found.is_some() {
+        return found;
     }
     if max(widest, gap) > 0.0 {
-        return closest(placed, teller);
+        return closest(placed, recorder);
     }
     if best.is_none_or(|best| best.separation <= gap) {
-        let middle = teller.triangle.corners.iter().sum::<Vec3>() / 3.0;
-        teller.lift(gap, closest_on_triangle(&teller.triangle.corners, placed.closest(middle)).0);
+        let middle = recorder.triangle.corners.iter().sum::<Vec3>() / 3.0;
+        recorder.lift(gap, closest_on_triangle(&recorder.triangle.corners, placed.closest(middle)).0);
     }
     None
 }
 
-/// Reports the part of the box over the triangle. `None`, and nothing reported, if the box passes beside the face, so
-/// that the points would not give the distance.
-fn face(gap: f32, widest: f32, teller: &mut Teller<'_>) -> Option<Part> {
-    let over = teller.over_face(Vec3::ZERO);
-    let nearest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
-    let beside = max(gap, widest) > 0.0 && nearest > gap + teller.solid.tolerance();
-    (!beside && teller.face_points(&over, When::Now)).then_some(Part::Face)
+/// Records the part of the box over the triangle. Returns `None` and records nothing if the box is beside the triangle,
+/// so that the points would not give their distance.
+fn face(gap: f32, widest: f32, recorder: &mut Recorder<'_>) -> Option<Part> {
+    let over = recorder.over_face(Vec3::ZERO);
+    let nearest = over.corners().iter().fold(f32::INFINITY, |y, c| min(recorder.triangle.height(c.at), y));
+    let beside = max(gap, widest) > 0.0 && nearest > gap + recorder.solid.tolerance();
+    (!beside && recorder.face_points(&over, When::Now)).then_some(Part::Face)
 }
 
 /// Results of the separating axes other than the triangle's own.
 struct Axes {
     /// The largest gap along any of these axes, metres.
     widest: f32,
-    /// The axis with the largest gap among those that lead out of the surface.
+    /// The axis with the largest gap among those that do not push the box through the triangle.
     best: Option<Axis>,
 }
 
-fn axes(placed: &PlacedBox, teller: &Teller<'_>) -> Axes {
-    let triangle = teller.triangle;
+fn axes(placed: &PlacedBox, recorder: &Recorder<'_>) -> Axes {
+    let triangle = recorder.triangle;
     let mut axes = Axes { widest: f32::NEG_INFINITY, best: None };
     let mut consider = |direction: Vec3, half: f32, of: AxisOf| {
         let [a, b, c] = triangle.corners.map(|corner| corner.dot(direction));
@@ -105,7 +106,6 @@ fn axes(placed: &PlacedBox, teller: &Teller<'_>) -> Axes {
             let sine = across.length();
             if sine > PARALLEL_SINE * length {
                 let direction = across / sine;
-                // A way out over two edges must be between the bounds of both.
                 consider(direction, placed.half_width(direction), AxisOf::Edges(i, j));
             }
         }
@@ -113,39 +113,39 @@ fn axes(placed: &PlacedBox, teller: &Teller<'_>) -> Axes {
     axes
 }
 
-/// Reports the triangle clipped to the prism over a face of the box.
-fn box_face(placed: &PlacedBox, k: usize, axis: &Axis, teller: &mut Teller<'_>) -> Option<Part> {
+/// Records the triangle clipped to the prism over a face of the box.
+fn box_face(placed: &PlacedBox, k: usize, axis: &Axis, recorder: &mut Recorder<'_>) -> Option<Part> {
     let outward = -axis.normal;
     let side = sign(placed.axes[k].dot(outward));
-    let tolerance = teller.solid.tolerance();
-    let part = teller.triangle.support(axis.normal, tolerance);
+    let tolerance = recorder.solid.tolerance();
+    let part = recorder.triangle.support(axis.normal, tolerance);
     let mut corners = [Vec3::ZERO; 8];
     let mut count = 3;
-    corners[..3].copy_from_slice(&teller.triangle.corners);
+    corners[..3].copy_from_slice(&recorder.triangle.corners);
     for u in [(k + 1) % 3, (k + 2) % 3] {
         for direction in [placed.axes[u], -placed.axes[u]] {
             count = cut(&mut corners, count, |p| p.dot(direction) - placed.half[u] - tolerance);
         }
     }
     let mut points = [ManifoldPoint::default(); 8];
-    let (mut told, mut nearest) = (0, f32::INFINITY);
+    let (mut count_near, mut nearest) = (0, f32::INFINITY);
     for (index, &corner) in corners[..count].iter().enumerate() {
         let separation = corner.dot(outward) - placed.half[k];
         nearest = min(separation, nearest);
-        if separation <= teller.margin {
-            let of_surface = super::name::part(teller.triangle, part) ^ ((index as u16) << 10);
-            points[told] = ManifoldPoint {
+        if separation <= recorder.margin {
+            let of_surface = super::name::part(recorder.triangle, part) ^ ((index as u16) << 10);
+            points[count_near] = ManifoldPoint {
                 position: corner + axis.normal * (0.5 * separation),
                 separation,
                 feature: pair(of_surface, feature::face(k, side)),
             };
-            told += 1;
+            count_near += 1;
         }
     }
-    if told == 0 || (axis.separation > 0.0 && nearest > axis.separation + tolerance) {
+    if count_near == 0 || (axis.separation > 0.0 && nearest > axis.separation + tolerance) {
         return None;
     }
-    teller.tell(axis.normal, part, When::Now, &points[..told]);
+    recorder.record(axis.normal, part, When::Now, &points[..count_near]);
     Some(part)
 }
 
@@ -172,35 +172,36 @@ fn cut(corners: &mut [Vec3; 8], count: usize, beyond: impl Fn(Vec3) -> f32) -> u
     left
 }
 
-/// Reports the closest points of an edge of the triangle and an edge of the box.
-fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Teller<'_>) -> Option<Part> {
-    let corners = teller.triangle.corners;
+/// Records the closest points of an edge of the triangle and an edge of the box.
+fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, recorder: &mut Recorder<'_>) -> Option<Part> {
+    let corners = recorder.triangle.corners;
     let edge = Segment { ends: [corners[i], corners[(i + 1) % 3]] };
     let index = placed.support(-axis.normal) & !(1 << j);
     let of_box = Segment { ends: [placed.vertex(index), placed.vertex(index | 1 << j)] };
     let (s, t) = of_box.closest_to_segment(&edge);
     let inside = |x: f32| x > 0.0 && x < 1.0;
-    // The triangle may reach further beside this edge; then this axis does not belong to the closest points.
+    // Another part of the triangle may extend further along the axis than this edge. Then the edges' closest points do
+    // not have this distance.
     let across = (of_box.at(s) - edge.at(t)).dot(axis.normal) - axis.separation;
-    let bound = across.abs() <= teller.solid.tolerance();
+    let bound = across.abs() <= recorder.solid.tolerance();
     if axis.separation > 0.0 && !(inside(s) && inside(t) && bound) {
         return None;
     }
-    // Shapes that touch along this direction, but not at these edges, touch elsewhere.
+    // If the edges are further apart than the gap along the axis, the shapes touch at other features.
     let apart = (of_box.at(s) - edge.at(t)).length();
-    let tolerance = teller.solid.tolerance();
+    let tolerance = recorder.solid.tolerance();
     if axis.separation > -tolerance && apart > axis.separation.abs() + tolerance {
         return None;
     }
     let part = Part::on_edge(i, t);
-    let under = under_face(placed, &edge, axis.normal, super::name::part(teller.triangle, part));
-    let under = under.as_ref().map_or(&[][..], |points| within(points, teller.margin));
-    let near = |point: &ManifoldPoint| point.separation <= axis.separation + teller.solid.tolerance();
+    let under = under_face(placed, &edge, axis.normal, super::name::part(recorder.triangle, part));
+    let under = under.as_ref().map_or(&[][..], |points| within(points, recorder.margin));
+    let near = |point: &ManifoldPoint| point.separation <= axis.separation + recorder.solid.tolerance();
     if under.iter().any(near) {
-        teller.tell(axis.normal, part, When::Now, under);
+        recorder.record(axis.normal, part, When::Now, under);
     } else {
         let position = (of_box.at(s) + edge.at(t)) * 0.5;
-        teller.point(axis.normal, part, position, axis.separation, feature::edge(j, index));
+        recorder.point(axis.normal, part, position, axis.separation, feature::edge(j, index));
     }
     Some(part)
 }
@@ -215,8 +216,8 @@ fn within(points: &[ManifoldPoint; 2], margin: f32) -> &[ManifoldPoint] {
     }
 }
 
-/// Returns both ends of the overlap between a box face and an edge of the triangle, if the face rests on the edge. With
-/// only the point where the edges cross, the box would rock from side to side forever.
+/// Returns both ends of the part of a triangle's edge under a box face, if the face rests on the edge. With only one
+/// point, where the edges cross, the box would never stop rocking from side to side.
 fn under_face(
     placed: &PlacedBox,
     edge: &Segment,
@@ -236,7 +237,7 @@ fn under_face(
         let along = 3 - k - u;
         let [from, to] = edge.ends.map(|end| end.dot(placed.axes[u]));
         for (low, limit) in [(true, -placed.half[u]), (false, placed.half[u])] {
-            // Side through which the edge enters or leaves.
+            // `comes` is true if the edge enters the face's prism through this side, false if it leaves there.
             let (comes, steps) = ((from < to) == low, to - from);
             if steps.abs() <= f32::MIN_POSITIVE {
                 // Parallel to the side: the whole edge is beyond the side, or no part of it.
@@ -263,9 +264,9 @@ fn under_face(
     }))
 }
 
-/// Reports the closest points of a separated box and triangle, by testing corners and edges.
-fn closest(placed: &PlacedBox, teller: &mut Teller<'_>) -> Option<Part> {
-    let corners = teller.triangle.corners;
+/// Records the closest points of a separated box and triangle, by testing all corners and edges.
+fn closest(placed: &PlacedBox, recorder: &mut Recorder<'_>) -> Option<Part> {
+    let corners = recorder.triangle.corners;
     let mut best = (f32::INFINITY, Vec3::ZERO, Vec3::ZERO, Part::Face, WHOLE);
     let mut consider = |on_box: Vec3, on_triangle: Vec3, part: Part, feature: u16| {
         let square = (on_box - on_triangle).length_squared();
@@ -292,11 +293,11 @@ fn closest(placed: &PlacedBox, teller: &mut Teller<'_>) -> Option<Part> {
     let (square, on_box, on_triangle, part, feature) = best;
     let separation = square.sqrt();
     // The direction between nearly coincident points is noise.
-    if separation > teller.margin || separation <= 1e-5 * placed.half.length() {
+    if separation > recorder.margin || separation <= 1e-5 * placed.half.length() {
         return None;
     }
     let normal = (on_box - on_triangle) / separation;
-    teller.point(normal, part, (on_box + on_triangle) * 0.5, separation, feature);
+    recorder.point(normal, part, (on_box + on_triangle) * 0.5, separation, feature);
     Some(part)
 }
 
@@ -305,10 +306,8 @@ mod tests {
     use super::*;
     use sinew_math::Transform;
 
-    /// An edge that is parallel to a side of the face above it is either wholly under the face or not at all; a
-    /// crossing edge is clipped between the sides.
     #[test]
-    fn edge_between_the_sides_of_a_face_is_under_it() {
+    fn edge_under_a_box_face_is_clipped_to_the_face() {
         let placed = PlacedBox::new(Vec3::new(2.0, 0.5, 1.0), &Transform::IDENTITY);
         let under = |from: Vec3, to: Vec3| {
             let points = under_face(&placed, &Segment { ends: [from, to] }, Vec3::Y, 0)?;
@@ -324,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn features_beyond_the_margin_are_skipped() {
+    fn points_beyond_the_margin_are_dropped() {
         let [near, far] = [0.01, 0.5].map(|separation| ManifoldPoint { separation, ..Default::default() });
         assert_eq!(within(&[near, near], 0.1), &[near, near]);
         assert_eq!(within(&[near, far], 0.1), &[near]);

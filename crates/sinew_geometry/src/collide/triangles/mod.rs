@@ -1,9 +1,9 @@
-//! Surface of triangles against a convex shape: several manifolds, without contacts at internal edges.
+//! Mesh or height field against a convex shape: several manifolds, without contacts at internal edges.
 //!
-//! Each triangle near the shape is tested by itself ([`round`], [`boxed`], [`other`]). Its contacts are then filtered
-//! ([`claims`]): faces under the shape come first and void their edges and corners, then edges at which the surface
-//! bends down, which void their corners, then corners. So shapes do not catch on edges within a floor. The remaining
-//! contacts are merged by normal and reduced to four points each ([`patch`]).
+//! Each triangle near the shape is tested separately ([`round`], [`boxed`], [`other`]). The contacts are then filtered
+//! ([`claims`]): a contact with a face voids contacts at the edges and corners of that face, and a contact with an edge
+//! voids contacts at its corners. So shapes do not catch on edges within a floor. The remaining contacts are merged by
+//! normal and reduced to four points each ([`patch`]).
 
 mod boxed;
 mod claims;
@@ -28,14 +28,14 @@ use outline::Outline;
 use sinew_math::{Transform, Vec3, min};
 use solid::Solid;
 
-/// Motion of a shape against a surface in the coming step.
+/// Motion of a shape relative to a surface in the coming step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Motion {
     /// Velocity of the shape's centre relative to the surface, world, m/s.
     pub velocity: Vec3,
-    /// Time of the motion, seconds.
+    /// Duration of the motion, seconds.
     pub dt: f32,
-    /// Distance within which points are searched, metres.
+    /// Largest separation at which points are reported, metres.
     pub margin: f32,
 }
 
@@ -46,7 +46,7 @@ struct Candidate {
     normal: Vec3,
     /// Feature of the triangle that is touched.
     part: Part,
-    /// Time of the contact: now, or when the shape has moved over the triangle.
+    /// Time of the contact.
     when: When,
     /// Displacement of the shape until then, metres.
     shift: Vec3,
@@ -62,11 +62,13 @@ struct Candidate {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum When {
+    /// At the present position of the shape.
     Now,
+    /// When the shape has moved over the triangle, or is pushed out along its normal. Voids no other contact.
     Soon,
 }
 
-/// Buffers that are reused from pair to pair.
+/// Buffers that calls of [`collide_surface`] reuse, to avoid allocations.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
     candidates: Vec<Candidate>,
@@ -75,8 +77,8 @@ pub struct Scratch {
     merging: patch::Merging,
 }
 
-/// Fills `out` with the contacts of a placed surface and a placed convex shape: normals from the surface to the shape.
-/// `ground` has the shapes beside the surface.
+/// Fills `out` with the contacts of a placed surface and a placed convex shape; normals point from the surface to the
+/// shape. `ground` returns the visible normals where other shapes continue the surface: see [`Ground`].
 pub fn collide_surface(
     surface: &Surface<'_>,
     world_from_surface: &Transform,
@@ -108,13 +110,19 @@ pub fn collide_surface(
         meet(&triangle.moved(-center), &solid, &local, scratch);
     });
     if scratch.candidates.is_empty() {
-        sunk(surface, center, shape, &solid, scratch);
+        push_out_from_behind(surface, center, shape, &solid, scratch);
     }
-    scratch.claims.settle(&mut scratch.candidates, solid.tolerance());
+    scratch.claims.void_features(&mut scratch.candidates, solid.tolerance());
     if let Some(ground) = ground {
         let world_from_center = *world_from_surface * Transform::from_translation(center);
         let bounds = (&solid, motion.margin);
-        seams::mend(ground, &world_from_center, bounds, &mut scratch.candidates, &mut scratch.points);
+        seams::use_visible_normals(
+            ground,
+            &world_from_center,
+            bounds,
+            &mut scratch.candidates,
+            &mut scratch.points,
+        );
     }
     patch::merge(&scratch.candidates, &scratch.points, solid.tolerance(), &mut scratch.merging, out);
     out.finish(world_from_surface, center);
@@ -130,7 +138,7 @@ fn middle(shape: &Shape) -> Vec3 {
     }
 }
 
-/// Tests a triangle near the shape and records the contacts.
+/// Tests the shape against one triangle and records the contacts.
 fn meet(triangle: &Triangle, solid: &Solid<'_>, motion: &Motion, scratch: &mut Scratch) {
     // The centre must be in front of the triangle, because triangles are one-sided.
     let height = triangle.height(Vec3::ZERO);
@@ -138,24 +146,30 @@ fn meet(triangle: &Triangle, solid: &Solid<'_>, motion: &Motion, scratch: &mut S
     if height <= 0.0 || gap > motion.margin {
         return;
     }
-    let mut teller = Teller { triangle, solid, margin: motion.margin, scratch };
+    let mut recorder = Recorder { triangle, solid, margin: motion.margin, scratch };
     let part = match solid {
-        Solid::PlacedSphere(radius) => round::sphere(*radius, &mut teller),
-        Solid::PlacedCapsule(pill) => round::capsule(pill, &mut teller),
-        Solid::Box(placed) => boxed::meet(placed, gap, &mut teller),
-        Solid::Other(posed) => other::other(posed, gap, &mut teller),
+        Solid::PlacedSphere(radius) => round::sphere(*radius, &mut recorder),
+        Solid::PlacedCapsule(pill) => round::capsule(pill, &mut recorder),
+        Solid::Box(placed) => boxed::meet(placed, gap, &mut recorder),
+        Solid::Other(posed) => other::other(posed, gap, &mut recorder),
     };
     let closing = -motion.velocity.dot(triangle.normal);
     if part != Some(Part::Face) && closing > 0.0 && gap > 0.0 {
-        // Adds the contact where the shape will reach the triangle: at the foot of a ramp it must not penetrate before
-        // it is over the ramp.
+        // Adds a contact with the face that the shape will reach in this step, so that a shape at the foot of a ramp
+        // does not penetrate the ramp before it is over it.
         let time = min(gap / closing, motion.dt);
-        teller.face(motion.velocity * time, When::Soon);
+        recorder.face(motion.velocity * time, When::Soon);
     }
 }
 
-/// Pushes a shape out at the nearest point if its centre is behind the surface by at most its thickness.
-fn sunk(surface: &Surface<'_>, center: Vec3, shape: &Shape, solid: &Solid<'_>, scratch: &mut Scratch) {
+/// Records a contact at the closest triangle if the shape's centre is behind the surface, by at most its inner radius.
+fn push_out_from_behind(
+    surface: &Surface<'_>,
+    center: Vec3,
+    shape: &Shape,
+    solid: &Solid<'_>,
+    scratch: &mut Scratch,
+) {
     let Some(closest) = surface.closest(center, shape.inner_radius()) else { return };
     let (distance, _) = closest.signed(center);
     if distance >= 0.0 {
@@ -163,24 +177,24 @@ fn sunk(surface: &Surface<'_>, center: Vec3, shape: &Shape, solid: &Solid<'_>, s
     }
     let triangle = closest.triangle.moved(-center);
     let separation = distance - solid.depth(triangle.normal);
-    let mut teller = Teller { triangle: &triangle, solid, margin: 0.0, scratch };
+    let mut recorder = Recorder { triangle: &triangle, solid, margin: 0.0, scratch };
     let point = ManifoldPoint {
         position: triangle.normal * (0.5 * distance),
         separation,
         feature: pair(name::FACE, feature::WHOLE),
     };
-    teller.tell(triangle.normal, Part::Face, When::Now, &[point]);
+    recorder.record(triangle.normal, Part::Face, When::Now, &[point]);
 }
 
 /// Records the contacts of one triangle.
-struct Teller<'a> {
+struct Recorder<'a> {
     triangle: &'a Triangle,
     solid: &'a Solid<'a>,
     margin: f32,
     scratch: &'a mut Scratch,
 }
 
-impl Teller<'_> {
+impl Recorder<'_> {
     /// Returns the side of the shape that faces the triangle, clipped to the prism over the triangle after a motion by
     /// `shift`.
     fn over_face(&self, shift: Vec3) -> Outline {
@@ -188,7 +202,8 @@ impl Teller<'_> {
         outline.cut(self.triangle, self.solid.tolerance()).moved(-shift)
     }
 
-    /// Records the part of the shape over the triangle, after a motion by `shift`; returns false if no part is over it.
+    /// Records contacts of the part of the shape that is over the triangle after a motion by `shift`. Returns false if
+    /// there are none.
     fn face(&mut self, shift: Vec3, when: When) -> bool {
         let over = self.over_face(shift);
         let has_points = self.face_points(&over, when);
@@ -198,6 +213,8 @@ impl Teller<'_> {
         has_points
     }
 
+    /// Records the corners of the outline over the triangle that are within the margin. Returns false if there are
+    /// none.
     fn face_points(&mut self, over: &Outline, when: When) -> bool {
         let (normal, radius) = (self.triangle.normal, self.solid.radius());
         let mut points = [ManifoldPoint::default(); outline::MAX_CORNERS];
@@ -213,12 +230,12 @@ impl Teller<'_> {
                 count += 1;
             }
         }
-        self.tell(normal, Part::Face, when, &points[..count]);
+        self.record(normal, Part::Face, when, &points[..count]);
         count > 0
     }
 
     /// Records points as a candidate, if there are any.
-    fn tell(&mut self, normal: Vec3, part: Part, when: When, points: &[ManifoldPoint]) {
+    fn record(&mut self, normal: Vec3, part: Part, when: When, points: &[ManifoldPoint]) {
         if points.is_empty() {
             return;
         }
@@ -237,18 +254,18 @@ impl Teller<'_> {
         self.scratch.points.extend_from_slice(points);
     }
 
-    /// Records a shape that is deep in the rim of the triangle while its facing side is not over the triangle: the way
-    /// out along the triangle's normal. The candidate does not void features of other triangles.
+    /// Records a contact along the triangle's normal, for a shape that overlaps the rim of the triangle while its
+    /// facing side is not over the triangle. The contact does not void features of other triangles.
     fn lift(&mut self, gap: f32, position: Vec3) {
         let feature = pair(name::FACE, feature::WHOLE);
         let point = ManifoldPoint { position, separation: gap, feature };
-        self.tell(self.triangle.normal, Part::Face, When::Soon, &[point]);
+        self.record(self.triangle.normal, Part::Face, When::Soon, &[point]);
     }
 
     /// Records a single point between a feature of the triangle and the shape.
     fn point(&mut self, normal: Vec3, part: Part, position: Vec3, separation: f32, of_shape: u16) {
         let feature = pair(name::part(self.triangle, part), of_shape);
-        self.tell(normal, part, When::Now, &[ManifoldPoint { position, separation, feature }]);
+        self.record(normal, part, When::Now, &[ManifoldPoint { position, separation, feature }]);
     }
 }
 

@@ -2,9 +2,9 @@
 
 use crate::triangles::{Part, Triangle};
 
-/// Name of all faces: one name, so that the contact of a corner sliding from triangle to triangle persists.
+/// Common name of all faces, so that the contact of a corner that slides from triangle to triangle persists.
 pub(super) const FACE: u16 = 0x300;
-/// Name of all features that other shapes hide. No edge or corner can have this name.
+/// Common name of all features that other shapes hide. No edge or corner can have this name.
 pub(super) const HIDDEN: u16 = 0x3ff;
 const EDGE: u16 = 0x200;
 const VERTEX: u16 = 0x100;

@@ -16,11 +16,11 @@ pub(super) struct Corner {
     pub of_shape: u16,
     /// Feature of the surface.
     pub of_surface: u16,
-    /// Plane that contains the line from this corner to the next.
+    /// Edge on which the line from this corner to the next lies.
     pub side: Side,
 }
 
-/// A line of an outline.
+/// Origin of a line of an outline.
 #[derive(Clone, Copy, Default, PartialEq)]
 pub(super) enum Side {
     /// An edge of the shape, by its feature.
@@ -36,7 +36,7 @@ pub(super) enum Side {
 pub(super) struct Outline {
     corners: [Corner; MAX_CORNERS],
     count: usize,
-    /// Feature of the shape's face that the outline is.
+    /// Feature of the shape from which the outline was made, if it is a face.
     pub face: u16,
 }
 
@@ -67,13 +67,13 @@ impl Outline {
     }
 
     /// Returns the part over and under the triangle (Sutherland & Hodgman 1974). The prism is widened by `tolerance`,
-    /// so that corners on its edges keep their names under rounding.
+    /// so that rounding does not change the names of corners on its edges.
     pub fn cut(mut self, triangle: &Triangle, tolerance: f32) -> Self {
         for edge in 0..3 {
             let (from, to) = (triangle.corners[edge], triangle.corners[(edge + 1) % 3]);
             let outward = sinew_math::normalize_or((to - from).cross(triangle.normal), Vec3::ZERO);
             let beyond = |p: Vec3| (p - from).dot(outward) - tolerance;
-            // Outlines are long, and usually all corners are on one side of an edge.
+            // Usually all corners are on one side of the edge; then the copy of the outline is avoided.
             let kept = self.corners().iter().filter(|corner| beyond(corner.at) <= 0.0).count();
             if kept == 0 {
                 self.count = 0;

@@ -5,7 +5,8 @@ use crate::collide::reduce::push_best;
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use sinew_math::{Transform, Vec3};
 
-/// Largest number of manifolds of a shape and a surface; contacts with further normals join the nearest manifold.
+/// Largest number of manifolds of a shape and a surface. The last manifold also takes contacts with less similar
+/// normals.
 pub const MAX_PARTS: usize = 8;
 /// Cosine between two normals (5°) above which the contacts share one normal.
 pub(super) const SAME_NORMAL: f32 = 0.996;
@@ -56,7 +57,7 @@ impl Patch {
     }
 }
 
-/// Buffers that are reused from pair to pair.
+/// Buffers that calls of [`merge`] reuse, to avoid allocations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Merging {
     /// Indices of the valid candidates, the deepest first.
@@ -76,7 +77,8 @@ pub(super) fn merge(
     let Merging { order, points: gathered } = merging;
     order.clear();
     order.extend((0..candidates.len() as u32).filter(|&i| candidates[i as usize].holds));
-    // Nearly equal depths are ordered by index, so that rounding does not change which normal represents several.
+    // Candidates of nearly equal depth are ordered by index, so that rounding does not change which normal the merged
+    // manifold gets.
     let depth = |i: u32| (candidates[i as usize].nearest / (4.0 * tolerance)).floor();
     order.sort_unstable_by(|&i, &j| depth(i).total_cmp(&depth(j)).then(i.cmp(&j)));
     while let Some(&first) = order.first()
@@ -109,7 +111,7 @@ fn push_once(points: &mut Vec<ManifoldPoint>, point: &ManifoldPoint, tolerance: 
     const FEW: usize = 4 * MAX_POINTS;
     let near = |p: &&mut ManifoldPoint| (p.position - point.position).length() <= 2.0 * tolerance;
     match points.iter_mut().rev().take(FEW).find(near) {
-        // Prefers the name of a face, which other triangles share.
+        // Prefers the name of a face, because all triangles have the same name for their faces.
         Some(known) => {
             if super::name::is_face(point.feature as u16) {
                 known.feature = point.feature;

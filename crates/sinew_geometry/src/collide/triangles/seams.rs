@@ -1,4 +1,4 @@
-//! Contacts at edges where another shape continues a surface get a normal that both shapes share.
+//! Replaces the normals of contacts where other shapes hide or continue a surface by the visible normals.
 
 use super::solid::Solid;
 use super::{Candidate, name};
@@ -7,17 +7,17 @@ use crate::collide::feature::pair;
 use crate::triangles::{Part, closest_on_triangle};
 use sinew_math::{Transform, Vec3, min};
 
-/// Function of a point of the surface and a normal. Returns the visible unit normal of the ground there, to be used in
-/// place of the normal, and the height of the point over the plane with that normal, metres; world. `None` if other
-/// shapes hide the surface.
+/// Function that gets a point of the surface and a contact normal there, in the world. It returns the visible unit
+/// normal of the ground that replaces the contact normal, and the height of the point over the supporting plane with
+/// that normal, metres. It returns `None` if other shapes hide the surface there.
 pub type Ground<'a> = dyn Fn(Vec3, Vec3) -> Option<(Vec3, f32)> + 'a;
 
-/// Cosine above which the visible normal counts as equal to the candidate's.
+/// Cosine between the visible normal and the candidate's normal above which the candidate is kept unchanged.
 const AS_FOUND: f32 = 0.999_999_9;
 
-/// Replaces the normals of the valid candidates by the visible normals of the ground. `margin`: see
-/// [`Motion`](super::Motion).
-pub(super) fn mend(
+/// Replaces the normals of the valid candidates by the visible normals of the ground, and voids hidden candidates.
+/// `margin` is [`Motion::margin`](super::Motion::margin).
+pub(super) fn use_visible_normals(
     ground: &Ground<'_>,
     world_from_center: &Transform,
     (solid, margin): (&Solid<'_>, f32),
@@ -38,13 +38,14 @@ pub(super) fn mend(
         };
         let normal = world_from_center.rotation.inverse() * normal;
         if normal.dot(candidate.normal) <= AS_FOUND {
-            put_on((normal, at - normal * height), (solid, margin), candidate, points);
+            move_to_plane((normal, at - normal * height), (solid, margin), candidate, points);
         }
     }
 }
 
-/// Moves a candidate to a plane: the points of a box on its edges, or the lowest point of a shape that may roll.
-fn put_on(
+/// Recomputes a candidate's points over a plane. The points of a box keep their positions on the box; other shapes get
+/// the corners of the side that faces the plane.
+fn move_to_plane(
     (normal, origin): (Vec3, Vec3),
     (solid, margin): (&Solid<'_>, f32),
     candidate: &mut Candidate,

@@ -39,7 +39,7 @@ impl<'a> Solid<'a> {
         }
     }
 
-    /// Extent from the origin against the unit vector `n`, metres.
+    /// Extent from the origin along `-n`, metres; `n` is a unit vector.
     pub fn depth(&self, n: Vec3) -> f32 {
         match self {
             Self::PlacedSphere(radius) => *radius,
@@ -49,7 +49,7 @@ impl<'a> Solid<'a> {
         }
     }
 
-    /// Length below which differences do not affect the choice of features, metres.
+    /// Length differences that the choice of features ignores, metres.
     pub fn tolerance(&self) -> f32 {
         let thin = match self {
             Self::PlacedSphere(radius) => *radius,
@@ -91,7 +91,7 @@ impl<'a> Solid<'a> {
                     push(corner.point, corner.name, Side::Shape(corner.side));
                 }
                 if !feature.is_face() {
-                    // A round side is lowest between the corners of its polygon.
+                    // A round side extends further than the edge or corner that represents it.
                     outline = lowest(posed, normal, outline);
                 }
                 outline.face = feature.name;

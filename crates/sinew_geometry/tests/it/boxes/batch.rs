@@ -119,9 +119,9 @@ fn batched_pairs_give_the_results_of_single_pairs() {
             assert_eq!(
                 found.distance.to_bits(),
                 one.distance.to_bits(),
-                "{level:?}: other distance of {a:?} and {b:?}"
+                "{level:?}: the batch has another distance for {a:?} and {b:?}"
             );
-            assert_eq!(found.axis, one.axis, "{level:?}: other axis of {a:?} and {b:?}");
+            assert_eq!(found.axis, one.axis, "{level:?}: the batch has another axis for {a:?} and {b:?}");
         }
         assert_eq!(overlapping[CASES / 8] >> 3, 0, "{level:?}: an absent pair counts as overlapping");
     }

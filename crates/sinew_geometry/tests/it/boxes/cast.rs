@@ -101,7 +101,7 @@ fn ray_hits_match_bisection() {
         check(&aabb, &WideBox::from(&aabb), of_center, &ray, case);
     }
     let share = hits * 100 / cases(100_000);
-    assert!((20..90).contains(&share), "{share} % hit");
+    assert!((20..90).contains(&share), "{share} % of the rays hit");
 }
 
 /// The half-line continues beyond the end of the segment.
@@ -123,10 +123,10 @@ fn half_line_hits_a_box_beyond_the_segment() {
 fn rays_hit_flat_boxes() {
     let sheet = Obb::new(Vec3::ZERO, Rotation::IDENTITY, Vec3::new(1.0, 0.0, 1.0));
     let down = Ray::between(Vec3::new(0.5, 2.0, 0.5), Vec3::new(0.5, -2.0, 0.5));
-    let hit = sheet.cast_ray(&down).expect("through the sheet");
+    let hit = sheet.cast_ray(&down).expect("the ray passes through the sheet");
     assert_eq!((hit.fraction, hit.normal), (0.5, Vec3::Y));
     let level = Ray::between(Vec3::new(-3.0, 0.0, 0.0), Vec3::new(3.0, 0.0, 0.0));
-    let hit = sheet.cast_ray(&level).expect("against the rim");
+    let hit = sheet.cast_ray(&level).expect("the ray in the plane hits the rim");
     assert_eq!((hit.point.x, hit.normal), (-1.0, Vec3::NEG_X));
     let start = Ray { origin: Vec3::ZERO, direction: Vec3::ZERO };
     assert_eq!(sheet.cast_ray(&start).map(|hit| (hit.fraction, hit.normal)), Some((0.0, Vec3::Y)));

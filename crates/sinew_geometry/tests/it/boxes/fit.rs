@@ -60,9 +60,10 @@ fn box_is_recovered_from_its_corners() {
     }
 }
 
-/// The smallest box around a regular tetrahedron is the cube whose face diagonals are its edges: three times its volume.
+/// The smallest box around a regular tetrahedron is the cube whose face diagonals are its edges: three times its
+/// volume.
 #[test]
-fn regular_tetrahedron_gets_its_cube() {
+fn box_around_a_regular_tetrahedron_is_a_cube() {
     let mut random = Random::new(82);
     for _ in 0..cases(10_000) {
         let turn = random.rotation();
@@ -91,7 +92,7 @@ fn prism_gets_a_box_on_one_of_its_sides() {
 
 /// Boxes around random clouds are never larger than the simpler boxes, and about as small as a random search finds.
 #[test]
-fn random_rotations_find_no_much_smaller_box() {
+fn fitted_box_is_about_as_small_as_a_random_search_finds() {
     let mut random = Random::new(83);
     let (mut worst, mut sum) = (0.0f32, 0.0);
     let count = cases(10_000);
@@ -120,7 +121,7 @@ fn random_rotations_find_no_much_smaller_box() {
 /// Function that returns a box around points.
 type Fit = fn(&[Vec3]) -> Option<Obb>;
 
-/// One point, points on a line, in a plane, all equal; no points; and NaN or infinity.
+/// Clouds of one point, of equal points, on a line or in a plane get a box; no points, NaN and infinity give `None`.
 #[test]
 fn degenerate_clouds_get_a_box() {
     let (p, along) = (Vec3::new(3.0, -1.0, 2.0), Vec3::new(0.6, 0.0, 0.8));

@@ -122,7 +122,7 @@ fn nearest_box_is_picked() {
     let at = |z: f32| Aabb::around(Vec3::new(0.0, 0.0, z), Vec3::splat(0.5));
     let boxes = [at(-4.0), at(2.0), at(2.0), at(-1.0)];
     let middle = frustum.ray(Vec2::ZERO);
-    let (index, hit) = pick(&boxes, &middle).expect("boxes are ahead");
+    let (index, hit) = pick(&boxes, &middle).expect("the ray hits boxes");
     assert_eq!((index, hit.normal), (1, Vec3::Z));
     assert!((hit.point.z - 2.5).abs() < 1e-5);
     assert_eq!(pick(&boxes, &frustum.ray(Vec2::new(0.9, 0.0))), None);

@@ -18,17 +18,17 @@ pub fn check(
 ) -> Result<(), String> {
     let still = [0.0; 3];
     let Some(Penetration { depth, direction }) = found else {
-        return if meets(still, -fine) { Err("they overlap".into()) } else { Ok(()) };
+        return if meets(still, -fine) { Err("no depth, but the shapes overlap".into()) } else { Ok(()) };
     };
     if !meets(still, coarse) {
-        return Err("they are apart".into());
+        return Err("a depth, but the shapes are apart".into());
     }
     let (depth, n) = (f64::from(depth), wide(direction));
     if depth.is_nan() || depth < 0.0 || (length(n) - 1.0).abs() > 1e-5 {
-        return Err(format!("{depth} along {direction} is no way"));
+        return Err(format!("invalid depth {depth} or direction {direction}"));
     }
     if meets(add(still, n, depth + 2.0 * fine), -fine) {
-        return Err(format!("{depth} along {direction} does not part them"));
+        return Err(format!("a motion by {depth} along {direction} does not separate the shapes"));
     }
     // No other way out is shorter.
     for k in 0..6 {
@@ -42,14 +42,16 @@ pub fn check(
         let shorter = (depth - 2.0 * coarse).max(0.0);
         let other = wide(other / other.length());
         if !meets(add(still, other, shorter), coarse) {
-            return Err(format!("{shorter} along {other:?} parts them, not {depth} along {direction} only"));
+            return Err(format!(
+                "a motion by {shorter} along {other:?} separates the shapes, but the depth is {depth} along {direction}"
+            ));
         }
     }
     Ok(())
 }
 
-/// Returns two error bounds for a pair of boxes, metres. The first covers the rounding of their sizes, their distance,
-/// and the centre of an aligned box; the second also the uncertain cross product of nearly parallel edges.
+/// Returns error bounds `[fine, coarse]` for two boxes, metres. `fine` covers the rounding of their sizes, of their
+/// distance and of the centre of an aligned box; `coarse` also the uncertain cross product of nearly parallel edges.
 pub fn tolerances(a: &WideBox, b: &WideBox, of_center: f64) -> [f64; 2] {
     let scale = a.size() + b.size() + length(add(a.center, b.center, -1.0));
     let fine = 1e-6 * scale + of_center + 1e-12;
@@ -88,7 +90,7 @@ fn oriented_boxes_match_enumeration() {
         overlapping += u32::from(met);
     }
     let share = overlapping * 100 / cases(100_000);
-    assert!((20..80).contains(&share), "{share} % overlap");
+    assert!((20..80).contains(&share), "{share} % of the pairs overlap");
 }
 
 #[test]

@@ -91,7 +91,7 @@ fn points_on_the_surface_are_inside() {
     }
 }
 
-/// Box rotated by 45°: depth and direction by hand.
+/// Compares depth and direction in a box rotated by 45° with values computed by hand.
 #[test]
 fn exit_direction_is_through_the_nearest_face() {
     let turned = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_4);

@@ -94,14 +94,14 @@ fn preference(ka: Kind, kb: Kind, a: &Placed, b: &Placed, truth: f64) -> f64 {
         (Kind::HalfSpace, _) | (Kind::Box | Kind::Sphere, Kind::Sphere) | (Kind::Sphere, Kind::Capsule) => {
             0.0
         }
-        // The nearer two cores are, the more rounding rotates the direction between them; the gap is measured at their
+        // The closer two cores are, the more rounding rotates the direction between them; the gap is measured at their
         // contact.
         (Kind::Capsule, Kind::Capsule) => {
             let cores = truth + f64::from(a.shape.inner_radius() + b.shape.inner_radius());
             let size = f64::from(a.size() + b.size());
             (2e-7 * size * size / cores.max(1e-9 * size)).min(1e-3 * size)
         }
-        // Near a surface, the direction from a centre is rounding.
+        // Close to a surface, rounding dominates the direction to the closest point.
         (Kind::Sphere, _) | (_, Kind::Sphere) => 1e-3 * f64::from(a.size() + b.size()),
         _ => 0.06 * truth.abs() + 0.011 * thinnest + 2e-3 * f64::from(a.size() + b.size()),
     }
@@ -153,11 +153,11 @@ fn separation_matches_the_support_functions() {
         hold(truth <= f64::from(margin) + rounding, || context("invented"))?;
         hold((m.normal.length() - 1.0).abs() < 1e-4, || context("not unit"))?;
         let preference = preference(ka, kb, a, b, truth);
-        hold(along > truth - preference - rounding, || context("not the best direction"))?;
+        hold(along > truth - preference - rounding, || context("the normal is not the best direction"))?;
         hold(nearest(&m) > along - rounding - 1e-4 * size, || context("too deep"))?;
         // Over a plane the deepest point is always in the manifold; otherwise only for shapes that do not touch yet.
         if ka == Kind::HalfSpace {
-            return hold(nearest(&m) < truth + rounding, || context("not the deepest"));
+            return hold(nearest(&m) < truth + rounding, || context("the deepest point is missing"));
         }
         let slack = preference + 1e-3 * size;
         hold(truth <= 0.0 || nearest(&m) < truth + slack, || context("too far"))
@@ -182,7 +182,9 @@ fn contact_points_lie_between_the_surfaces() {
             tally.off += u32::from(away > 0.01);
             tally.far += u32::from(away > 0.05);
         }
-        hold(m.points().iter().all(|p| p.separation <= 0.05 * size), || format!("beyond the margin: {m:?}"))
+        hold(m.points().iter().all(|p| p.separation <= 0.05 * size), || {
+            format!("a point is beyond the margin: {m:?}")
+        })
     });
     for (pair, tally) in &tallies {
         println!("{pair}: {tally:?}");
@@ -221,7 +223,9 @@ fn exchanged_shapes_give_the_mirrored_contact() {
     judge(3, |ka, kb, a, b, _| {
         let size = a.size().max(b.size());
         let (ab, ba) = (a.collide(b, 0.05 * size), b.collide(a, 0.05 * size));
-        hold((ab.count == 0) == (ba.count == 0), || format!("one is missing\n{ab:?}\n{ba:?}"))?;
+        hold((ab.count == 0) == (ba.count == 0), || {
+            format!("only one order has a manifold\n{ab:?}\n{ba:?}")
+        })?;
         let exchanged = is_exchanged(ka, kb, size, &ab, &ba);
         if exchanged.is_err() && ka == kb && is_tie(ka, a, b, &ab, &ba) {
             *ties.entry((ka, kb)).or_default() += 1;
@@ -229,26 +233,26 @@ fn exchanged_shapes_give_the_mirrored_contact() {
         }
         exchanged
     });
-    println!("as good, and exchanged for another: {ties:?}");
+    println!("pairs with another, equally good result after the exchange: {ties:?}");
     assert!(ties.values().all(|&ties| ties <= 2 + cases(100_000) / 1_000), "{ties:?}");
 }
 
 /// Checks that one manifold is the other with exchanged shapes.
 fn is_exchanged(ka: Kind, kb: Kind, size: f32, ab: &Manifold, ba: &Manifold) -> Verdict {
     let context = |what: &str| format!("{what}\n{ab:?}\n{ba:?}");
-    hold((ab.normal + ba.normal).length() < 1e-3, || context("another normal"))?;
+    hold((ab.normal + ba.normal).length() < 1e-3, || context("the normals are not opposite"))?;
     // Hulls with many corners per face may keep other points: see `hull::pairs`.
     if (ka, kb) == (Kind::Hull, Kind::Hull) {
         return Ok(());
     }
-    hold(ab.count == ba.count, || context("another number of points"))?;
+    hold(ab.count == ba.count, || context("the numbers of points differ"))?;
     for p in ab.points() {
         let far = |q: &ManifoldPoint| (q.position - p.position).length();
         let twin = ba.points().iter().min_by(|q, r| far(q).total_cmp(&far(r))).expect("equal counts");
-        hold(far(twin) < 2e-3 * size, || context("another point"))?;
-        hold((p.separation - twin.separation).abs() < 1e-3 * size, || context("another separation"))?;
+        hold(far(twin) < 2e-3 * size, || context("a point differs"))?;
+        hold((p.separation - twin.separation).abs() < 1e-3 * size, || context("a separation differs"))?;
         let same = ka == kb || p.feature == twin.feature.rotate_left(16);
-        hold(same, || context("another feature"))?;
+        hold(same, || context("a feature differs"))?;
     }
     Ok(())
 }
@@ -274,6 +278,6 @@ fn contacts_rotate_with_the_shapes() {
         other += u32::from((motion.rotation * here.normal - there.normal).length() > 0.05);
         hold((near - far).abs() < slack, context)
     });
-    println!("{other} have another normal when turned");
-    assert!(other < 35 * cases(1_000), "{other} manifolds have another normal");
+    println!("{other} manifolds have another normal after the rotation");
+    assert!(other < 35 * cases(1_000), "{other} manifolds have another normal after the rotation");
 }

@@ -19,7 +19,7 @@ fn casts_stop_where_the_gap_becomes_zero() {
             let motion = (random.in_cube() + (b.frame.translation - a.frame.translation) / size) * size;
             let along = |t: f32| {
                 let frame = Transform::new(a.frame.translation + motion * t, a.frame.rotation);
-                gap(&a.shape, &frame, &b.shape, &b.frame).expect("both are finite")
+                gap(&a.shape, &frame, &b.shape, &b.frame).expect("one shape is bounded and both are finite")
             };
             let hit = cast_shape(&a.shape, &a.frame, motion, &b.shape, &b.frame);
             let context = || format!("{ka:?} {kb:?} case {case}: {hit:?} along {motion}\n{a:?}\n{b:?}");

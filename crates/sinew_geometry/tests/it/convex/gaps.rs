@@ -1,5 +1,5 @@
-//! Gaps are verified by bounds: points on both surfaces bound the distance from above, and the support functions along
-//! the normal bound it from below. Tested directions bound the depth of overlaps.
+//! Gaps compared with bounds: points on both surfaces bound the distance from above, and the support functions along
+//! the normal bound it from below. For overlaps, tested directions bound the depth from above.
 
 use crate::cases::cases;
 use crate::collide::{
@@ -61,16 +61,16 @@ fn check(a: &Placed, b: &Placed, found: &Gap, random: &mut Random) -> Result<f64
     let fine = 2e-6 * size + 2e-7 * places;
     let distance = f64::from(found.distance);
     if (found.normal.length() - 1.0).abs() > 1e-5 {
-        return Err("the normal is not unit".into());
+        return Err("the normal is not a unit vector".into());
     }
     let Some(n) = unit(wide(found.normal)) else { return Err("no normal".into()) };
     let mut worst = (apart_along(a, b, n) - distance).abs();
     if worst > fine {
-        return Err(format!("along the normal they are {} apart", apart_along(a, b, n)));
+        return Err(format!("the gap along the normal is {}", apart_along(a, b, n)));
     }
     let way = (found.on_b - found.on_a) - found.normal * found.distance;
     if f64::from(way.length()) > fine {
-        return Err("the points are not across from each other".into());
+        return Err("the points are not opposite each other along the normal".into());
     }
     if distance > 0.0 {
         for (of, point) in [(a, found.on_a), (b, found.on_b)] {
@@ -93,7 +93,7 @@ fn check(a: &Placed, b: &Placed, found: &Gap, random: &mut Random) -> Result<f64
         let along = apart_along(a, b, m);
         worst = worst.max(along - distance);
         if along > distance + fine {
-            return Err(format!("along {m:?} they are {along} apart"));
+            return Err(format!("the gap along {m:?} is larger: {along}"));
         }
     }
     Ok(worst / size)

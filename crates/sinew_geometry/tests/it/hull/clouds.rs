@@ -97,7 +97,11 @@ fn hulls_of_random_clouds_contain_their_points() {
             assert!(off <= 1e-6 * size, "a corner is {off} from all points: {context}");
         }
         if kind == 4 && far < 4.0 * size {
-            assert_eq!((hull.vertices().len(), hull.faces().len()), (8, 6), "a box: {context}");
+            assert_eq!(
+                (hull.vertices().len(), hull.faces().len()),
+                (8, 6),
+                "the cloud of a box must give 8 corners and 6 faces: {context}"
+            );
         }
         let again = Hull::new(hull.vertices()).expect("the points of a hull must have a hull");
         assert!(again.volume() > (1.0 - 1e-3) * hull.volume(), "{context}");
@@ -115,7 +119,7 @@ fn point_order_does_not_change_the_hull() {
         for k in (1..points.len()).rev() {
             points.swap(k, random.index(k + 1));
         }
-        let other = Hull::new(&points).expect("the same points");
+        let other = Hull::new(&points).expect("the same points in another order must have a hull");
         assert_eq!(hull, other);
         assert_eq!(hull.content_hash(), other.content_hash());
     }
