@@ -411,10 +411,10 @@ impl Character {
         let on_ground = self.is_in_world();
         let Activity::Limp(lying) = &mut self.activity else { return };
         let still = &mut lying.stillness;
-        let is_slack = still.slackness(dt) >= 1.0;
+        let is_slack = still.friction_share(dt) >= 1.0;
         still.steps += 1;
         if !is_slack {
-            self.physique.slacken(&self.def, still.slackness(dt), world);
+            self.physique.slacken(&self.def, still.friction_share(dt), world);
         }
         let lain = still.look(world, self.physique.own(), on_ground);
         if lain.touched {
