@@ -133,7 +133,7 @@ impl GrabPoint {
         let (ground, joint) = (BodyId::from_bits(r.u64()?), JointId::from_bits(r.u64()?));
         let (held, origin) = (BodyId::from_bits(r.u64()?), r.vec3()?);
         if !origin.is_finite() {
-            return Err(r.error("a grip whose numbers make no sense"));
+            return Err(r.error("invalid settings of a grip"));
         }
         Ok(Self { ground, joint, held, origin, grasp: Grasp::load(r)? })
     }

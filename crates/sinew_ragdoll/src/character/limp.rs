@@ -177,7 +177,7 @@ fn is_still_on(world: &World, bodies: &[BodyId], ground: GroundMotion) -> bool {
     })
 }
 
-/// Returns true if one of the bodies is deeper than [`SUNK`] in another shape, so that contacts still push it out.
+/// Returns true if one of the bodies is deeper than [`SUNK`] in static bodies, so that contacts still push it out.
 pub(crate) fn is_sunk(world: &World, bodies: &[BodyId]) -> bool {
     bodies.iter().any(|&body| world.penetration(body) > SUNK)
 }
