@@ -107,8 +107,9 @@ impl Passage {
 #[derive(Clone, Copy, Debug)]
 struct LimbChain {
     bones: TwoBone,
-    /// Index of the part at the limb's end, and of the part at its middle joint if the limb raises that joint.
+    /// Index of the part at the limb's end.
     end: usize,
+    /// Index of the part at the limb's middle joint, if the limb raises that joint.
     middle: Option<usize>,
 }
 
@@ -353,7 +354,7 @@ impl Clearance {
         self.strays.iter().map(at).collect()
     }
 
-    /// Moves those strays whose carriers have moved to their transforms `carried` relative to them.
+    /// Moves the strays with these indices to the transforms `carried`, which are relative to their carriers.
     fn carry(
         &self,
         def: &CharacterDef,
