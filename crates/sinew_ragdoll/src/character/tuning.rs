@@ -771,12 +771,12 @@ pub(crate) const CAUGHT_SPEED: f32 = 0.15;
 /// As [`CAUGHT_SPEED`].
 pub(crate) const CAUGHT_SHARE: f32 = 0.35;
 
-/// Landing error that is accepted for a step that is one second shorter, m/s.
+/// Reduction of the landing error that justifies a step that is one second shorter, m/s.
 ///
-/// Larger: steps are hasty. Smaller: steps come late. Shown by the tests of `stumble`.
+/// Larger: steps come late. Smaller: steps are hasty. Shown by the tests of `stumble`.
 pub(crate) const HURRY: f32 = 0.2;
 
-/// Landing error that is accepted for each metre by which the reach is exceeded less, dimensionless.
+/// Landing error that is accepted to avoid each metre by which the body exceeds the other foot's reach, dimensionless.
 ///
 /// Larger: steps are short. Smaller: the character does the splits. Shown by the tests of `stumble`.
 pub(crate) const STRAIN_COST: f32 = 3.0;

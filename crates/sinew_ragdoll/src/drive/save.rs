@@ -37,7 +37,7 @@ impl Drives {
     /// If the bytes are not a saved state; the drives then do not change.
     pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
-            return Err(r.error("is not a ragdoll's drives of this version"));
+            return Err(r.error("these bytes are not ragdoll drives saved by this version"));
         }
         let recovery = sound(r)?;
         let ground = if r.bool()? { Some(BodyId::from_bits(r.u64()?)) } else { None };
@@ -89,12 +89,16 @@ fn load_mode(r: &mut Reader<'_>) -> Result<DriveMode, ReadError> {
             )
         }
         3 => DriveMode::Keyed,
-        _ => return Err(r.error("unknown way to drive a body")),
+        _ => return Err(r.error("unknown drive mode of a body")),
     })
 }
 
 /// Reads a number that must be finite and not negative.
 fn sound(r: &mut Reader<'_>) -> Result<f32, ReadError> {
     let x = r.f32()?;
-    if (0.0..f32::INFINITY).contains(&x) { Ok(x) } else { Err(r.error("a number of a drive makes no sense")) }
+    if (0.0..f32::INFINITY).contains(&x) {
+        Ok(x)
+    } else {
+        Err(r.error("a number of a drive is negative or not finite"))
+    }
 }
