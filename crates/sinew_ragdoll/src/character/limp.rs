@@ -168,7 +168,7 @@ pub(crate) fn is_still(world: &World, bodies: &[BodyId]) -> bool {
     is_still_on(world, bodies, GroundMotion::default())
 }
 
-/// Returns true if every body is slower than [`STILL_LINEAR`] and [`STILL_ANGULAR`] relative to the moving ground.
+/// Returns true if every body is slower than [`STILL_LINEAR`] and [`STILL_ANGULAR`] relative to the ground `ground`.
 fn is_still_on(world: &World, bodies: &[BodyId], ground: GroundMotion) -> bool {
     bodies.iter().all(|&body| {
         let velocity = world.velocity(body);

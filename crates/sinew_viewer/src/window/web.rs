@@ -151,7 +151,7 @@ pub(super) struct Host {
 impl Host {
     pub fn attributes(&self) -> WindowAttributes {
         let attributes = Window::default_attributes().with_canvas(Some(self.canvas.clone()));
-        // Do not activate the window: it would take the focus, and the browser would scroll to it.
+        // On a page, do not activate the window: it would take the focus, and the browser would scroll to it.
         attributes.with_prevent_default(!self.is_part).with_active(!self.is_part)
     }
 
