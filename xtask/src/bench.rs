@@ -41,7 +41,7 @@ const STARTS: u32 = 5;
 /// Steps of a scene in a quick run.
 const QUICK_STEPS: u32 = 60;
 
-/// Time limit of a run: some scenes diverge on some engines.
+/// Time limit of a run, because some engines take very long for scenes that diverge.
 const LIMIT: Duration = Duration::from_secs(900);
 
 /// A measurement outside of the peers' scenes: a character from rig to baked clip, compared to real time.
@@ -92,8 +92,8 @@ pub struct Bench {
     /// Count the instructions of the kernels instead, and compare them with bench/counts/baseline.txt
     #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "check"])]
     counts: bool,
-    /// Time the eight-lane kernels beside the limit of the machine's arithmetic instead; with --check, exit with 1 if one
-    /// misses its share
+    /// Time the eight-lane kernels beside the limit of the machine's arithmetic instead; with --check, exit with 1 if
+    /// one misses its share
     #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "counts"])]
     kernels: bool,
     /// Print the times and counts of Sinew's stages on a scene instead, of `peers list`
@@ -240,7 +240,7 @@ impl Bench {
                 let judging = if round == 1 || scene.is_chaotic { Judging::On } else { Judging::Off };
                 let start = scene.is_chaotic.then_some(round);
                 let report = engine.run(&scene.name, Run { steps, start, judging }, LIMIT)?;
-                eprintln!("{}", in_a_word(&report));
+                eprintln!("{}", summary(&report));
                 result.reports.push(report);
             }
         }
@@ -254,7 +254,7 @@ impl Bench {
         }
         let (missed, open) = requirements::shortfalls(results);
         for line in &missed {
-            println!("falls short: {line}");
+            println!("misses its requirement: {line}");
         }
         for line in &open {
             println!("not measured: {line}");
@@ -263,8 +263,8 @@ impl Bench {
     }
 }
 
-/// Returns a summary of a run for the console.
-fn in_a_word(report: &Value) -> String {
+/// Returns a short summary of a run for the console.
+fn summary(report: &Value) -> String {
     match report["cpu_ms"]["median"].as_f64() {
         Some(median) => format!("{:>9} ms", figures::rounded(median)),
         None => report["unsupported"]
@@ -275,8 +275,8 @@ fn in_a_word(report: &Value) -> String {
     }
 }
 
-/// Measures the demo: returns the simulated seconds per processor second of its bake, and the number of conversions of its file, scaled to
-/// 6,000 vertices, to a ragdoll in 100 ms.
+/// Measures the demo: returns the simulated seconds per processor second of its bake, and the number of conversions of
+/// its file, scaled to 6,000 vertices, to a ragdoll in 100 ms.
 fn bake() -> Result<(Option<f64>, Option<f64>)> {
     let sinew = command::build_sinew(Profile::Release)?;
     let folder = std::env::temp_dir().join(format!("sinew-bench-{}", std::process::id()));
@@ -293,7 +293,8 @@ fn bake() -> Result<(Option<f64>, Option<f64>)> {
     Ok((Some(realtime), Some(100.0 / milliseconds * (vertices / 6000.0))))
 }
 
-/// Returns the simulated seconds per processor second of limp characters until they sleep, for the rigs in [`SHARED`]; empty without them.
+/// Returns the simulated seconds per processor second of limp characters until they sleep, for the rigs in [`SHARED`];
+/// empty without them.
 fn limp() -> Result<BTreeMap<String, f64>> {
     let folder = command::root().join(SHARED);
     let Ok(files) = fs::read_dir(&folder) else {

@@ -50,8 +50,8 @@ fn cargo(arguments: &[&str]) -> Command {
     cargo
 }
 
-/// Runs the library's tests, checks its header, and builds and runs its example and the programs of the pages: plainly, as C++, and with the address
-/// sanitizer.
+/// Runs the library's tests, checks its header, and builds and runs its example and the programs of the pages: plainly,
+/// as C++, and with the address sanitizer.
 ///
 /// # Errors
 /// If a program does not build, or its exit status is not 0.
@@ -66,7 +66,7 @@ pub fn c() -> Result<()> {
     for page in C_PAGES {
         let printed = blocks(&read(page)?, "c");
         if printed.is_empty() {
-            bail!("{page}: it has no program in C");
+            bail!("{page}: the page has no program in C");
         }
         for (index, program) in printed.iter().enumerate() {
             let name = page.replace(['/', '.'], "_");
@@ -93,7 +93,8 @@ pub fn c() -> Result<()> {
 
 fn compile_and_run(program: &Path, folder: &Path, options: &[&str]) -> Result<()> {
     let kind = if options.is_empty() { "plain" } else { "checked" };
-    let binary = folder.join(program.file_stem().context("it has a name")?).with_extension(kind);
+    let binary =
+        folder.join(program.file_stem().context("the program has no file name")?).with_extension(kind);
     let include = command::root().join("bindings/c/include");
     let mut cc = Command::new("cc");
     cc.args(WARNINGS).args(options).arg("-I").arg(include).arg(program);
@@ -101,8 +102,8 @@ fn compile_and_run(program: &Path, folder: &Path, options: &[&str]) -> Result<()
     command::run(Command::new(binary).env("ASAN_OPTIONS", "detect_leaks=1").stdout(Stdio::null()))
 }
 
-/// Builds the wheel and installs it in its own environment: its tests, its types, the programs of the pages, the notebook, and Ray on
-/// two workers.
+/// Builds the wheel and installs it in its own environment: its tests, its types, the programs of the pages, the
+/// notebook, and Ray on two workers.
 ///
 /// # Errors
 /// If a part fails, or there is no network.
@@ -169,7 +170,7 @@ pub fn wheel(builder: &Path, out: &Path) -> Result<PathBuf> {
     let source = command::root().join("bindings/python");
     command::run(build.current_dir(source).env("CARGO_TARGET_DIR", target()))?;
     let wheels = fs::read_dir(out)?.collect::<std::io::Result<Vec<_>>>()?;
-    Ok(wheels.first().context("maturin made no wheel")?.path())
+    Ok(wheels.first().context("maturin built no wheel")?.path())
 }
 
 /// Returns the programs on pages.
@@ -178,7 +179,7 @@ fn printed(pages: &[&str], language: &str) -> Result<Vec<String>> {
     for page in pages {
         let programs = blocks(&read(page)?, language);
         if programs.is_empty() {
-            bail!("{page}: it has no program in {language}");
+            bail!("{page}: the page has no program in {language}");
         }
         all.extend(programs);
     }

@@ -19,7 +19,8 @@ const DATA: &str = "../shared/data";
 /// `cargo xtask blender`.
 #[derive(clap::Args)]
 pub struct Blender {
-    /// Also install it into Blender's Python module (1 GB from PyPI), test everything on six rigs, and take screenshots in a window
+    /// Also install it into Blender's Python module (1 GB from PyPI), test everything on six rigs, and take screenshots
+    /// in a window
     #[arg(long)]
     check: bool,
 }
@@ -58,7 +59,8 @@ fn zip() -> Result<PathBuf> {
     Ok(path.into())
 }
 
-/// Tests the zip, installed by Blender's own operator with empty settings: every operator, the whole workflow on each rig, and a window.
+/// Tests the zip, installed by Blender's own operator with empty settings: every operator, the whole workflow on each
+/// rig, and a window.
 ///
 /// # Errors
 /// If a part fails, or there is no network.
@@ -94,7 +96,8 @@ pub fn check() -> Result<()> {
     window(&tests, &data)
 }
 
-/// Tests the preview, the handles and the simulation in a window of an installed Blender, such as Debian's 3.4, and leaves screenshots.
+/// Tests the preview, the handles and the simulation in a window of an installed Blender, such as Debian's 3.4, and
+/// leaves screenshots.
 fn window(tests: &Path, data: &Path) -> Result<()> {
     let has_window = ["blender", "Xvfb"].into_iter().all(command::answers);
     if !has_window && !command::answers("apt-get") {

@@ -171,7 +171,7 @@ mod tests {
                         ![wind](book/wind.png \"at 2.5 s\")\n";
         assert_eq!(linked, expected);
         assert_eq!(with_links(&linked), linked);
-        let found = pictures(&linked).expect("each is shown once");
+        let found = pictures(&linked).expect("each scene is shown once");
         let expected = [("kepler".to_owned(), None), ("wind".to_owned(), Some("2.5".to_owned()))];
         assert_eq!(found, BTreeMap::from(expected));
     }

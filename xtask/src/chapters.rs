@@ -134,7 +134,7 @@ pub fn about(root: &Path, scene: &str) -> Result<String> {
 fn about_in(sources: &str, scene: &str) -> Result<String> {
     let after = sources.split_once(&format!("name: \"{scene}\",")).map(|(_, after)| after);
     let line = after.and_then(|after| after.split_once("about: \"")?.1.split_once("\","));
-    Ok(line.with_context(|| format!("the scene {scene} has no line for people"))?.0.to_owned())
+    Ok(line.with_context(|| format!("the scene {scene} has no description"))?.0.to_owned())
 }
 
 /// Escapes text for HTML.
@@ -384,7 +384,7 @@ mod tests {
         assert_eq!(chapters.len(), 2);
         assert_eq!(html(chapters[0].title.clone()), "1. Forces");
         let mut site = Site::default();
-        let page = site.html(chapters[0].text.clone()).expect("a page");
+        let page = site.html(chapters[0].text.clone()).expect("the text converts to a page");
         assert!(
             page.contains("<p>A <strong>force</strong> is <code>a &lt; b</code>, see <a href=\"there.html\">there</a>.</p>"),
             "{page}"
@@ -408,7 +408,7 @@ mod tests {
     #[test]
     fn formulas_are_typeset_and_code_is_not() {
         let text = "So `a = F/m` by `World::step`.\n\n```text\nT = 4π √(r/g) = 2.00607 s.\n```\n\n```text\nplain text\n```\n";
-        let page = Site::default().html(events(text)).expect("a page");
+        let page = Site::default().html(events(text)).expect("the text converts to a page");
         assert!(page.contains("<math><mi>a</mi>") && page.contains("<code>World::step</code>"), "{page}");
         assert!(page.contains("<math display=\"block\"><mi>T</mi>") && page.contains("plain text"), "{page}");
     }
@@ -419,7 +419,7 @@ mod tests {
         pages.add("joints.md", "joints.html");
         let text = "See [joints](../guide/src/joints.md#limits), [code](../src/lib.rs).\n\n```rust\n# hidden\nlet x = 1;\n```\n";
         let here = command::root();
-        let html = pages.html(&here, &here, text, "").expect("a page");
+        let html = pages.html(&here, &here, text, "").expect("the text converts to a page");
         assert!(html.contains("<a href=\"joints.html#limits\">joints</a>, code."), "{html}");
         assert!(html.contains("let x = 1;") && !html.contains("hidden"), "{html}");
     }
@@ -428,9 +428,10 @@ mod tests {
     #[test]
     fn whole_book_is_converted() {
         let folder = command::target().join("tmp/chapters");
-        std::fs::create_dir_all(&folder).expect("a folder");
-        let (written, scenes) = super::write(&command::root(), &folder).expect("the book");
-        let book = std::fs::read_to_string(command::root().join(super::BOOK)).expect("the book");
+        std::fs::create_dir_all(&folder).expect("the folder can be created");
+        let (written, scenes) = super::write(&command::root(), &folder).expect("the book can be converted");
+        let book =
+            std::fs::read_to_string(command::root().join(super::BOOK)).expect("the book can be converted");
         assert_eq!(written.len(), book.lines().filter(|line| line.starts_with("## ")).count());
         assert_eq!(scenes, book.lines().filter(|line| line.starts_with("![")).count());
     }

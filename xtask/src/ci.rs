@@ -13,9 +13,11 @@ use std::time::Instant;
 /// `cargo xtask ci`.
 #[derive(clap::Args)]
 pub struct Ci {
-    /// Adds slow checks: state hashes in every build × thread count, not only the diagonal; the
-    /// large scenes; all random cases of shapes, queries and files; 10,000 random worlds (or the seeds of
-    /// SINEW_WORLDS, as in 100..200); ten minutes of random lives, and ten with characters; definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the viewer's window and its page; the npm package; the plugin for Bevy; the libraries for C and Python; the extension in Blender; instruction counts; the oldest compiler
+    /// Adds slow checks: state hashes in every build × thread count, not only the diagonal; the large scenes; all
+    /// random cases of shapes, queries and files; 10,000 random worlds (or the seeds of SINEW_WORLDS, as in 100..200);
+    /// ten minutes of random lives, and ten with characters; definitions through serde; 10,000 random falls of each
+    /// rig, not 100; the peers that need no C; the viewer's window and its page; the npm package; the plugin for Bevy;
+    /// the libraries for C and Python; the extension in Blender; instruction counts; the oldest compiler
     #[arg(long)]
     full: bool,
 }
@@ -97,8 +99,8 @@ fn peers() -> Result<()> {
     command::run(clippy.args(["--", "-D", "warnings"]))
 }
 
-/// Opens the viewer's window on its own display, drags and edits in it, compares its pictures with the committed ones, and opens all scenes many
-/// times. Skips this with a message if there is no driver.
+/// Opens the viewer's window on its own display, drags and edits in it, compares its pictures with the committed ones,
+/// and opens all scenes many times. Skips this with a message if there is no driver.
 fn window() -> Result<()> {
     command::provide("Xvfb", "xvfb")?;
     command::provide("xdotool", "xdotool")?;
@@ -115,8 +117,8 @@ fn window() -> Result<()> {
 /// Compiler of the windowed examples: the full Bevy needs a newer one than the plugin.
 const WINDOW_TOOLCHAIN: &str = "1.97.1";
 
-/// Compiles the plugin for Bevy without features and tests it with all; then tests the whole of Bevy with files loaded by Bevy, and two
-/// examples in a window.
+/// Compiles the plugin for Bevy without features and tests it with all; then tests the whole of Bevy with files loaded
+/// by Bevy, and two examples in a window.
 fn bevy() -> Result<()> {
     let run = |cargo: &mut Command, arguments: &[&str]| {
         cargo.args(arguments).args(["--locked", "--manifest-path", "integrations/bevy_sinew/Cargo.toml"]);
@@ -135,7 +137,8 @@ fn bevy() -> Result<()> {
     Ok(())
 }
 
-/// Runs an example in its own window, with a software driver if there is no other; fails if its picture does not show the moving objects.
+/// Runs an example in its own window, with a software driver if there is no other; fails if its picture does not show
+/// the moving objects.
 fn bevy_window(example: &str, at: &str) -> Result<()> {
     command::provide("xvfb-run", "xvfb")?;
     if !Path::new("/usr/share/vulkan/icd.d").exists() {
@@ -181,7 +184,8 @@ fn random_worlds() -> Result<()> {
     command::run(test.args(["--", "--nocapture", "ten_thousand_random_worlds"]).env("SINEW_FULL", "1"))
 }
 
-/// Runs random call sequences for ten minutes, or those of SINEW_LIVES, without and with characters, and all tests of corrupted snapshots.
+/// Runs random call sequences for ten minutes, or those of SINEW_LIVES, without and with characters, and all tests of
+/// corrupted snapshots.
 fn random_lives() -> Result<()> {
     for package in ["sinew_physics", "sinew_ragdoll"] {
         let mut test = command::cargo(&["test", "--release", "--package", package, "--test", "lives"]);
@@ -196,8 +200,8 @@ fn serde() -> Result<()> {
     command::run(command::cargo(&test).args(["--", "serde::"]))
 }
 
-/// Runs every random case of tests that otherwise run a hundredth: boxes, every pair of shapes, trees and queries against brute force, damaged files,
-/// rigs in many variants.
+/// Runs every random case of tests that otherwise run a hundredth: boxes, every pair of shapes, trees and queries
+/// against brute force, damaged files, rigs in many variants.
 fn all_cases() -> Result<()> {
     let mut test = command::cargo(&["test", "--release", "--package", "sinew_geometry"]);
     test.args(["--package", "sinew_physics", "--package", "sinew_formats", "--package", "sinew_ragdoll"]);
@@ -264,7 +268,8 @@ fn deny() -> Result<PathBuf> {
     Ok(binary)
 }
 
-/// Compiles everything except the window, whose libraries need a newer compiler, with the `rust-version` of the root manifest.
+/// Compiles everything except the window, whose libraries need a newer compiler, with the `rust-version` of the root
+/// manifest.
 fn oldest_compiler() -> Result<()> {
     let manifest = fs::read_to_string(command::root().join("Cargo.toml"))?;
     let version = manifest.lines().find_map(|line| line.strip_prefix("rust-version = "));
@@ -390,7 +395,7 @@ mod tests {
     #[test]
     fn every_gate_is_a_key_of_the_contract() {
         let table =
-            fs::read_to_string(command::root().join(contract::PATH)).expect("docs/contract.md is there");
+            fs::read_to_string(command::root().join(contract::PATH)).expect("docs/contract.md can be read");
         let rows = contract::parse(&table).expect("docs/contract.md is well formed");
         let missing = contract::violations(&rows, "demo", &json!({}));
         for (key, _) in GATES {

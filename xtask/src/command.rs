@@ -104,8 +104,8 @@ pub fn build_sinew(profile: Profile) -> Result<PathBuf> {
     build(&mut command, "sinew")
 }
 
-/// Returns the path of the debug binary that the tests run, with the window. After the tests it needs no compiling; the command line alone
-/// has other features and takes two minutes.
+/// Returns the path of the debug binary that the tests run, with the window. After the tests it needs no compiling; the
+/// command line alone has other features and takes two minutes.
 ///
 /// # Errors
 /// If the tests do not compile.

@@ -7,8 +7,8 @@ const FOLDER: &str = "fuzz";
 
 /// `cargo xtask fuzz`: fuzzes each target for a while.
 ///
-/// Failures are in fuzz/artifacts; the corpus is in fuzz/corpus, from which the next run continues. The corpus starts with the
-/// files in fuzz/seeds, and in `../shared/data` if there are any.
+/// Failures are in fuzz/artifacts; the corpus is in fuzz/corpus, from which the next run continues. The corpus starts
+/// with the files in fuzz/seeds, and in `../shared/data` if there are any.
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask fuzz --target bvh --seconds 600")]
 pub struct Fuzz {

@@ -161,7 +161,7 @@ fn variants_at_once(
                 scope.spawn(move || run(profile, threads))
             })
             .collect();
-        started.into_iter().map(|it| it.join().expect("no run panics")).collect()
+        started.into_iter().map(|it| it.join().expect("no run may panic")).collect()
     })
 }
 

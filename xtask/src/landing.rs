@@ -252,18 +252,18 @@ mod tests {
     fn every_link_has_a_target() {
         let folder = command::target().join("tmp/landing");
         _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).expect("a folder");
+        fs::create_dir_all(&folder).expect("the folder can be created");
         let root = command::root();
-        let (chapters, _) = chapters::write(&root, &folder).expect("the book");
+        let (chapters, _) = chapters::write(&root, &folder).expect("the book can be converted");
         let facts = Facts { address: "", bytes: 1, source: None, chapters: &chapters };
-        write(&root, &folder, &facts).expect("the pages");
+        write(&root, &folder, &facts).expect("the pages can be written");
         let copied = ["page.js", "page.css", "chapter.js", "poster.jpg"];
-        for entry in fs::read_dir(&folder).expect("the folder") {
-            let path = entry.expect("a file").path();
+        for entry in fs::read_dir(&folder).expect("the folder can be read") {
+            let path = entry.expect("the folder's entry can be read").path();
             if path.extension().is_none_or(|kind| kind != "html") {
                 continue;
             }
-            let html = fs::read_to_string(&path).expect("text");
+            let html = fs::read_to_string(&path).expect("the page can be read");
             // Skips blocks of code.
             let code = |part: &str| part.split_once("</pre>").map(|(_, after)| after.to_owned());
             let html: String = html
@@ -278,7 +278,7 @@ mod tests {
                     let is_elsewhere = file.is_empty() || to.contains(':') || copied.contains(&file);
                     // The reference of Rust is written by rustdoc.
                     let leads = is_elsewhere || file.starts_with("api/") || folder.join(file).exists();
-                    assert!(leads, "{}: {to}", path.display());
+                    assert!(leads, "{}: the link to {to} has no target", path.display());
                 }
             }
         }

@@ -1,4 +1,5 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | blender | npm | release | web | fuzz | lives | soak | sample`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench |
+//! new-user | sizes | bindings | blender | npm | release | web | fuzz | lives | soak | sample`.
 #![forbid(unsafe_code)]
 
 mod bench;

@@ -29,8 +29,8 @@ impl NewUser {
     }
 }
 
-/// Builds and runs the programs of README and of the guide's first chapter in release builds, without kernels for processors that lack AVX2:
-/// they take a third of the compile time.
+/// Builds and runs the programs of README and of the guide's first chapter in release builds, without kernels for
+/// processors that lack AVX2: they take a third of the compile time.
 ///
 /// # Errors
 /// If a program fails.
@@ -41,20 +41,21 @@ pub fn library() -> Result<()> {
     PAGES.iter().try_for_each(|&(page, name)| project(name, page, &dependencies, &["--release"]))
 }
 
-/// Builds and runs the program of the plugin's README with its listed dependencies, in a debug build, which takes half the time.
+/// Builds and runs the program of the plugin's README with its listed dependencies, in a debug build, which takes half
+/// the time.
 ///
 /// # Errors
 /// If the program does not build or run, or lists no dependencies.
 pub fn bevy() -> Result<()> {
     let text = read(BEVY_PAGE)?;
-    let printed = blocks(&text, "toml").into_iter().find(|block| block.contains("bevy_app"));
-    let printed = printed.context("no dependencies are printed")?;
+    let listed = blocks(&text, "toml").into_iter().find(|block| block.contains("bevy_app"));
+    let listed = listed.context("the page has no `toml` block with the dependencies")?;
     let path = command::root().join("integrations/bevy_sinew");
     let by_path = |line: &str| match line.split_once(" = ") {
         Some(("bevy_sinew", _)) => format!("bevy_sinew = {{ path = {path:?} }}\n"),
         _ => format!("{line}\n"),
     };
-    let lines = printed.lines().filter(|line| *line != "[dependencies]");
+    let lines = listed.lines().filter(|line| *line != "[dependencies]");
     project("bevy", BEVY_PAGE, &lines.map(by_path).collect::<String>(), &[])
 }
 
@@ -74,7 +75,7 @@ fn project(name: &str, page: &str, dependencies: &str, profile: &[&str]) -> Resu
 fn try_in(folder: &Path, name: &str, page: &str, dependencies: &str, profile: &[&str]) -> Result<()> {
     let programs = blocks(&read(page)?, "rust");
     if programs.is_empty() {
-        bail!("it has no program");
+        bail!("the page has no program in Rust");
     }
     let manifest = format!(
         "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[dependencies]\n{dependencies}"
@@ -101,7 +102,7 @@ fn whole(program: &str) -> String {
     if program.contains("fn main()") { program.to_owned() } else { format!("fn main() {{\n{program}}}\n") }
 }
 
-/// Returns fenced blocks of a language as printed, without lines that only tests use.
+/// Returns the fenced blocks of a language as a reader sees them, without lines that only tests use.
 pub fn blocks(text: &str, language: &str) -> Vec<String> {
     let mut blocks = Vec::new();
     let mut open: Option<(bool, String)> = None;
@@ -139,8 +140,8 @@ mod tests {
         for page in PAGES.iter().map(|page| page.0).chain([BEVY_PAGE]) {
             assert!(!blocks(&read(page).expect("the file can be read"), "rust").is_empty(), "{page}");
         }
-        let printed = blocks(&read(BEVY_PAGE).expect("the file can be read"), "toml");
-        assert!(printed.iter().all(|block| block.contains("bevy_sinew = ")) && printed.len() == 2);
+        let listed = blocks(&read(BEVY_PAGE).expect("the file can be read"), "toml");
+        assert!(listed.iter().all(|block| block.contains("bevy_sinew = ")) && listed.len() == 2);
     }
 
     /// The page shows the program that the package `window` compiles.
@@ -148,7 +149,7 @@ mod tests {
     fn program_with_a_window_is_the_compiled_one() {
         let shown = blocks(&read(BEVY_PAGE).expect("the file can be read"), "rust,ignore").swap_remove(0);
         let file = read("integrations/bevy_sinew/window/examples/first.rs").expect("the file can be read");
-        let (_, program) = file.split_once("\n\n").expect("a comment comes first");
+        let (_, program) = file.split_once("\n\n").expect("the program follows a comment");
         assert_eq!(shown, program);
     }
 }

@@ -15,7 +15,8 @@ pub const SHARED: &str = "../shared/data/rigs";
 /// Files that may hold a rig.
 const RIGS: [&str; 3] = ["glb", "gltf", "vrm"];
 
-/// `cargo xtask ragdolls`: builds, drops and throws the ragdoll of each rig in a folder, and writes docs/ragdoll-quality.md.
+/// `cargo xtask ragdolls`: builds, drops and throws the ragdoll of each rig in a folder, and writes
+/// docs/ragdoll-quality.md.
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask ragdolls --rigs ~/characters --gate 1000")]
 pub struct Ragdolls {

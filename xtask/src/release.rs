@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn a_version_is_read_from_either_form() {
+    fn version_is_read_from_toml_and_json() {
         assert_eq!(version_in("[a]\nversion = \"1.2.3\"\n", "version = ").as_deref(), Some("1.2.3"));
         assert_eq!(version_in("{\n  \"version\": \"1.2.3\",\n", "\"version\": ").as_deref(), Some("1.2.3"));
         assert_eq!(version_in("name = 1", "version = "), None);

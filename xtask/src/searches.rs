@@ -12,8 +12,8 @@ const CHUNK: f64 = 5.0;
 
 /// `cargo xtask lives`: random lives of worlds, or of characters in them, from the seed at which the last run ended.
 ///
-/// Each chunk of five minutes adds a line to a file outside the repository: seeds, lives, calls, failures. The search ends at the first chunk with a
-/// failure, and prints the failure as a short program.
+/// Each chunk of five minutes adds a line to a file outside the repository: seeds, lives, calls, failures. The search
+/// ends at the first chunk with a failure, and prints the failure as a short program.
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask lives --of characters --minutes 60")]
 pub struct Lives {
@@ -104,7 +104,7 @@ fn next_seed(log: &Path) -> Result<u64> {
     let end = line
         .strip_prefix("seeds ")
         .and_then(|rest| rest.split([',', ' ']).next()?.split_once("..")?.1.parse().ok());
-    end.with_context(|| format!("{}: its last line begins with no seeds: {line}", log.display()))
+    end.with_context(|| format!("{}: the last line does not begin with seeds: {line}", log.display()))
 }
 
 /// `cargo xtask soak`: an hour of scenes, checked in every step.
@@ -140,9 +140,10 @@ mod tests {
     fn a_search_continues_where_it_ended() {
         let log = env::temp_dir().join(format!("sinew-search-{}.log", std::process::id()));
         assert_eq!(next_seed(&log).expect("a missing log gives the first seed"), 0);
-        fs::write(&log, "seeds 0..60, 60 lives\nseeds 60..1790, 1730 lives\n").expect("a file");
+        fs::write(&log, "seeds 0..60, 60 lives\nseeds 60..1790, 1730 lives\n")
+            .expect("the file can be written");
         assert_eq!(next_seed(&log).expect("the log has lines"), 1790);
-        fs::write(&log, "nothing\n").expect("a file");
+        fs::write(&log, "nothing\n").expect("the file can be written");
         assert!(next_seed(&log).is_err());
         fs::remove_file(&log).expect("the file can be removed");
     }

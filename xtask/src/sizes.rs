@@ -7,7 +7,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// `cargo xtask sizes`: builds the physics alone and the library for WebAssembly and prints the table. Takes about ten minutes.
+/// `cargo xtask sizes`: builds the physics alone and the library for WebAssembly and prints the table. Takes about ten
+/// minutes.
 #[derive(clap::Args)]
 pub struct Sizes {
     /// Optimisation levels

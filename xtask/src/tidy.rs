@@ -1,8 +1,8 @@
 //! Project rules that the compiler does not check. Each rule is one file and one function from the repository to
 //! findings; a test beside it plants a violation and expects its finding.
 //!
-//! The rules read tokens, not types ([`lexer`]): comments and strings never trigger a rule, but the rules miss names that are
-//! reached through a macro or an alias. Rules that need types are in `clippy.toml` (`disallowed-methods`).
+//! The rules read tokens, not types ([`lexer`]): comments and strings never trigger a rule, but the rules miss names
+//! that are reached through a macro or an alias. Rules that need types are in `clippy.toml` (`disallowed-methods`).
 
 mod arrows;
 mod bits;
@@ -188,8 +188,8 @@ impl Repo {
     }
 }
 
-/// Returns true for a folder without source files. Build folders are named like `target` or `target-something`; `.git` is a
-/// file in a linked working tree.
+/// Returns true for a folder without source files. Build folders are named like `target` or `target-something`; `.git`
+/// is a file in a linked working tree.
 fn is_foreign(name: &str) -> bool {
     name == ".git" || name == "out" || name == "node_modules" || name.starts_with("target")
 }

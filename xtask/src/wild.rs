@@ -102,18 +102,18 @@ fn measure_all(binary: &Path, data: &Path, out: &Path, files: &[PathBuf]) -> Res
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let next = Mutex::new(files.iter().enumerate());
     let rows: Mutex<Vec<(usize, Result<Row>)>> = Mutex::new(Vec::new());
-    let take = || next.lock().expect("no worker panics with it").next();
+    let take = || next.lock().expect("no thread panics while it holds the lock").next();
     std::thread::scope(|scope| {
         for _ in 0..threads {
             scope.spawn(|| {
                 while let Some((index, file)) = take() {
                     let row = measure(binary, data, out, file);
-                    rows.lock().expect("no worker panics with it").push((index, row));
+                    rows.lock().expect("no thread panics while it holds the lock").push((index, row));
                 }
             });
         }
     });
-    let mut rows = rows.into_inner().expect("no worker panics with it");
+    let mut rows = rows.into_inner().expect("no thread panics while it holds the lock");
     rows.sort_by_key(|(index, _)| *index);
     rows.into_iter().map(|(_, row)| row).collect()
 }

@@ -86,8 +86,9 @@ impl BatchWorlds {
         let Some(worlds) = worlds else { return Ok((0..count).collect()) };
         let numbers: Vec<i64> = elements(worlds, &[None], "worlds")?;
         let known = |&number: &i64| usize::try_from(number).ok().filter(|&number| number < count);
-        let checked =
-            |number: &i64| known(number).ok_or_else(|| bad(format!("there is no world {number} of {count}")));
+        let checked = |number: &i64| {
+            known(number).ok_or_else(|| bad(format!("world {number} is out of range: the batch has {count}")))
+        };
         numbers.iter().map(checked).collect()
     }
 }
@@ -309,8 +310,10 @@ impl BatchWorlds {
     /// Contact points of one world, as in `World`.
     fn contacts<'py>(&self, py: Python<'py>, world: usize) -> PyResult<Bound<'py, PyDict>> {
         let count = self.worlds.len();
-        let world =
-            self.worlds.get(world).ok_or_else(|| bad(format!("there is no world {world} of {count}")))?;
+        let world = self
+            .worlds
+            .get(world)
+            .ok_or_else(|| bad(format!("world {world} is out of range: the batch has {count}")))?;
         contact_dict(py, &world.lock().unwrap_or_else(PoisonError::into_inner))
     }
 

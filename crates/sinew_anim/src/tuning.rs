@@ -35,8 +35,8 @@ pub const MAX_SPEED: f32 = 1_000.0;
 /// `retarget` and by `loaded` of `sinew`.
 pub(crate) const WALK_STANDS: usize = 3;
 
-/// Least share of a clip's frames in which a foot is low in a run: one frame in this number, because a runner is mostly
-/// in the air.
+/// Reciprocal of the least share of a clip's frames in which a foot must be low for a run, a number of frames. Each foot
+/// of a runner is mostly off the ground.
 ///
 /// Larger: a kick counts as a run. Smaller: cartoon runs count as jumps. Shown by `loaded` of `sinew`.
 pub(crate) const RUN_STANDS: usize = 8;

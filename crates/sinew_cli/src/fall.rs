@@ -25,11 +25,11 @@ pub struct Fall<'a> {
 }
 
 impl<'a> Fall<'a> {
-    /// Simulates and judges the fall, with doubts about the mass.
+    /// Simulates and judges the fall. `doubt`: reason to doubt the mass, which lowers the verdict.
     pub fn simulate(input: &'a BakeInput<'a>, doubt: Option<&Doubt>) -> Self {
         let (baked, cpu_seconds) = timed(|| bake(input));
         let seconds = baked.steps as f64 * input.world.step_nanoseconds as f64 * 1e-9;
-        // The clock may be too coarse for a short bake.
+        // The measured time may be 0 for a short bake, because the clock is coarse.
         let realtime_factor = seconds / cpu_seconds.max(1e-6);
         let judge = |[quality]: &[FallQuality; 1]| judge_bake(quality);
         let figures = [baked.quality];

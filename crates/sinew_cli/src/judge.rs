@@ -17,7 +17,7 @@ pub const LIMP_AT: f32 = 0.5;
 /// Default length of a bake, seconds.
 pub const SECONDS: f32 = 8.0;
 
-/// Result of the judge.
+/// Verdict on a character, with its reasons.
 pub struct Judgement {
     pub verdict: Verdict,
     /// Metrics beyond their thresholds, one sentence each.
@@ -25,7 +25,7 @@ pub struct Judgement {
     pub skin: SkinReport,
 }
 
-/// Judges drops and a baked run of a character, with doubts about its mass.
+/// Judges drops and a baked run of a character, including a reason to doubt its mass.
 pub fn judge_life(
     character: &CharacterFile,
     tested: &DropReport,

@@ -31,7 +31,7 @@
 //! ```
 //!
 //! # Modules
-//! | module | answers |
+//! | module | contents |
 //! |---|---|
 //! | [`Shape`] | the kinds of solids and surfaces; volume, [mass properties](Shape::mass_properties), bounds, distances of points |
 //! | [`boxes`] | [`Aabb`] and [`Obb`]: points, overlaps, depths, rays, fits, frustum culling |

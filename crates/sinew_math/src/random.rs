@@ -9,7 +9,7 @@ pub struct Random {
 }
 
 impl Random {
-    /// Creates the generator of sequence number `seed`.
+    /// Creates a generator with the given seed.
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }

@@ -498,6 +498,23 @@ pub(crate) const NEVER_STILL: f32 = 6.0;
 /// Larger: kneeling or leaning counts as fallen. Smaller: sitting counts as standing. Shown by the tests of `faults`.
 pub(crate) const STILL_UPRIGHT: f32 = 0.8;
 
+/// Height of a limp human's hips over the floor, as a share of their height in the bind pose, above which it props them
+/// up.
+///
+/// Larger: kneeling counts as lying. Smaller: lying on a side counts as propped. Shown by the tests of `faults`.
+pub(crate) const PROPPED: f32 = 0.3;
+
+/// Speed of a limp human's hips below which it does not fall any more, m/s.
+///
+/// Larger: falls count. Smaller: a body that sags slowly does not count. Shown by the tests of `faults`.
+pub(crate) const PROPPED_SLOW: f32 = 0.15;
+
+/// Longest time for which a limp human may prop its hips up, seconds.
+///
+/// Larger: bodies that rest on hands and feet count as good. Smaller: knees that give way slowly are reported. Shown by
+/// the tests of `faults`.
+pub(crate) const PROPPED_FOR: f32 = 1.5;
+
 /// Height of a heavy part of a creature's trunk over the floor at rest, as a share of the trunk's mean height at
 /// release, above which the creature counts as standing on its legs.
 ///

@@ -1,21 +1,22 @@
 //! A long run of all scenes, checked in every step: `cargo xtask soak --hours 1`.
 //!
-//! Each scene runs for its share of the time and restarts after its usual number of steps. Checks after each step: no body is lost, no
-//! joint is open by more than 5 mm, no body is faster than 30 m/s. Checks over the run: memory and step time do not grow.
+//! Each scene runs for its share of the time and restarts after its usual number of steps. Checks after each step: no
+//! body is lost, no joint is open by more than 5 mm, no body is faster than 30 m/s. Checks over the run: memory and
+//! step time do not grow.
 
 use sinew::math::{Vec3, max};
 use sinew::physics::{BodyKind, JointState, World};
 use sinew_scenes::scenes::{Instance, find};
 use std::process::ExitCode;
 
-/// A part of the soak: a scene, its settings with `#` for the round's number, and the steps of a round (`None`: one round for all the
-/// time).
+/// A part of the soak test: a scene, its settings with `#` in place of the round's number, and the number of steps of a
+/// round (`None`: a single round).
 struct Part {
     name: &'static str,
     scene: &'static str,
     settings: &'static [&'static str],
     round: Option<u64>,
-    /// Speed that the scene's hits give a single limb, m/s.
+    /// Largest speed that one of the scene's hits gives to a limb, m/s. It is the speed limit if it exceeds `FAST`.
     blows: f32,
 }
 
@@ -114,7 +115,7 @@ impl Seen {
         }
         if self.seconds[1] > SLOWER * self.seconds[0] {
             faults.push(format!(
-                "a step takes {:.2} ms, then {:.2} ms",
+                "the step time grows from {:.2} to {:.2} ms",
                 1e3 * self.seconds[0],
                 1e3 * self.seconds[1]
             ));
@@ -130,7 +131,7 @@ fn memory() -> f64 {
     pages.unwrap_or(0.0) * 4096.0
 }
 
-/// CPU time of this thread, seconds, so that other processes do not count. 0 if it is unknown.
+/// CPU time of this thread, which excludes that of other processes, seconds; 0 if it is unknown.
 fn processor_seconds() -> f64 {
     let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = statistics.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());

@@ -60,7 +60,8 @@ impl CrowdScene {
     }
 }
 
-/// A [`CrowdScene`] in Sinew: cursors and a model pose for each character; intermediate poses are shared.
+/// State of a [`CrowdScene`] in Sinew: cursors and a model pose for each character, and intermediate poses that all
+/// characters share.
 pub struct Crowd {
     scene: CrowdScene,
     skeleton: Skeleton,
@@ -81,8 +82,9 @@ impl Crowd {
     /// Creates the state before the first pose.
     pub fn new(scene: CrowdScene) -> Self {
         let joints = scene.rig.joints.len();
-        let built =
-            |clip| BuiltClip::build(clip, &scene.rig, &ClipBuildOptions::default()).expect("a good clip");
+        let built = |clip| {
+            BuiltClip::build(clip, &scene.rig, &ClipBuildOptions::default()).expect("the clip fits the rig")
+        };
         Self {
             skeleton: Skeleton::new(&scene.rig),
             clips: scene.clips.each_ref().map(built),

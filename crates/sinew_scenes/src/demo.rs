@@ -1,5 +1,5 @@
-//! The demo on the embedded character and world: the mannequin walks out of the cabin, is hit in the back at the top of the stairs, falls
-//! down, gets up and walks on. Only the hit is scripted.
+//! The demo on the embedded character and world: the mannequin walks out of the cabin, is hit in the back at the top of
+//! the stairs, falls down, gets up and walks on. Only the hit is scripted.
 
 use crate::cabin::{Prop, Site};
 use crate::mannequin::{Mannequin, mannequin};
@@ -75,6 +75,6 @@ pub(crate) fn walking_mannequin() -> (CharacterDef, f32) {
         locomotion: Locomotion::Forward { speed },
         ..MotionSet::default()
     };
-    character.set_motions(motions).expect("clips made by code can be played");
+    character.set_motions(motions).expect("the mannequin's clips are valid");
     (character, speed)
 }

@@ -1,4 +1,5 @@
-//! The mannequin in a skirt and a cape: chains of bones around its waist and down its back, with a skin as artists make it.
+//! The mannequin in a skirt and a cape: chains of bones around its waist and down its back, with a skin as artists make
+//! it.
 
 use sinew::anim::{
     Garment, Joint, JointIdx, LocalTransform, Primitive, Rig, RigMesh, Skin, analyze, guess_garments,
@@ -65,7 +66,11 @@ pub fn dressed_rig(garments: &[&Chains]) -> Rig {
     let mut rig = crate::mannequin::mannequin().rig;
     for chains in garments {
         let first = rig.joints.len();
-        let on = rig.joints.iter().position(|joint| joint.name == chains.on).expect("it hangs on a joint");
+        let on = rig
+            .joints
+            .iter()
+            .position(|joint| joint.name == chains.on)
+            .expect("the rig has the joint that carries the garment");
         for column in 0..chains.columns {
             chains.add_column(&mut rig, on, column);
         }
@@ -103,7 +108,8 @@ impl Chains {
         }
     }
 
-    /// Adds a skin over the chains, whose joints begin at `first`; each vertex moves with bones of its two neighbouring chains.
+    /// Adds a skin over the chains, whose joints begin at `first`; each vertex moves with bones of its two neighbouring
+    /// chains.
     fn add_skin(&self, rig: &mut Rig, first: JointIdx) {
         let joints = self.bones + 1;
         let slot = |column: usize, bone: usize| ((column % self.columns) * joints + bone) as u16;
@@ -159,8 +165,9 @@ impl Chains {
     }
 }
 
-/// The mannequin in these garments as a character: the motions of [`mannequin::character`](crate::mannequin::character), and the garments
-/// detected by joint names, each changed by `adjust`.
+/// The mannequin in these garments as a character: the motions of
+/// [`mannequin::character`](crate::mannequin::character), and the garments detected by joint names, each changed by
+/// `adjust`.
 ///
 /// # Panics
 /// Never panics, because the character is valid.
@@ -174,7 +181,8 @@ pub fn dressed(garments: &[&Chains], adjust: impl Fn(&mut Garment)) -> Character
     let mut worn = guess_garments(&rig);
     worn.iter_mut().for_each(adjust);
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
-    def.set_motions(crate::mannequin::character().motions().clone()).expect("the file's clips can be played");
+    def.set_motions(crate::mannequin::character().motions().clone())
+        .expect("the mannequin's clips are valid");
     def.set_garments(&worn);
     def
 }

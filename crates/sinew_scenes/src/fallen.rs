@@ -1,4 +1,4 @@
-//! A limp character of a file falls on a floor, drawn by its skin, or by its bodies if it has none.
+//! Scene in which a character of a file falls limp on a floor. Pictures show its skin, or its bodies if it has no skin.
 
 use crate::framework::actors::Figure;
 use crate::framework::acts::{Act, Directed};
@@ -21,8 +21,8 @@ const HEIGHT: f32 = 0.4;
 /// Forward lean at the start, radians: an upright character would not fall over.
 const LEAN: f32 = 0.35;
 
-/// A character that falls limp on a floor, and the report on its ragdoll. The fall begins with the first step, in the rest pose
-/// of the file.
+/// A character that falls limp on a floor, and the report on its ragdoll. The fall begins with the first step, in the
+/// rest pose of the file.
 ///
 /// # Errors
 /// If no ragdoll can be built.
@@ -79,8 +79,8 @@ fn start(def: &RagdollDef) -> Transform {
     Transform::new(Vec3::Y * (HEIGHT * def.height), Rotation::from_axis_angle(Vec3::X, LEAN))
 }
 
-/// Half of the box that a camera keeps in the picture, in heights of the character: enough for a lying body and for
-/// raised arms.
+/// Half extents of the box that a camera keeps in the picture, as shares of the character's height: large enough for a
+/// lying body and for raised arms.
 pub(crate) const ROOM: Vec3 = Vec3::new(0.5, 0.56, 0.5);
 
 /// Returns the centre of the bounds of all joints, world space, metres.
@@ -89,7 +89,7 @@ pub(crate) fn middle(model: &[Affine]) -> Vec3 {
     points.reduce(|a, b| a.merge(&b)).unwrap_or_default().center()
 }
 
-/// Length of a fall for which the meter reserves memory from the start, seconds.
+/// Duration of a fall for which the quality meter reserves memory at the start, seconds.
 const SECONDS: f32 = 10.0;
 
 /// The falling character.

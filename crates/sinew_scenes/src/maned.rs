@@ -115,6 +115,7 @@ pub fn maned(settings: &SpringBone) -> CharacterDef {
     let analysis = analyze(&rig).expect("the mannequin has a skin");
     let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the rig can be built");
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
-    def.set_motions(crate::mannequin::character().motions().clone()).expect("the file's clips can be played");
+    def.set_motions(crate::mannequin::character().motions().clone())
+        .expect("the mannequin's clips are valid");
     def
 }

@@ -75,7 +75,8 @@ pub fn skirted_rig(cells: [usize; 2]) -> Rig {
     rig
 }
 
-/// Converts the skirt of such a rig to a sheet and returns its index. Particles are at most `spacing` (m) apart if their number allows.
+/// Converts the skirt of such a rig to a sheet and returns its index. Particles are at most `spacing` (m) apart if
+/// their number allows.
 ///
 /// # Errors
 /// Returns the errors of [`lay_sheet`].
@@ -97,7 +98,8 @@ pub fn lay_skirt(rig: &mut Rig, most_particles: usize, spacing: f32) -> Result<u
     lay_sheet(rig, &part, &options)
 }
 
-/// The mannequin in that skirt as a character: the motions of [`mannequin::character`](crate::mannequin::character), and the garment changed by `adjust`.
+/// The mannequin in that skirt as a character: the motions of [`mannequin::character`](crate::mannequin::character),
+/// and the garment changed by `adjust`.
 ///
 /// # Panics
 /// Never panics, because the character is valid.
@@ -113,7 +115,8 @@ pub fn skirted(adjust: impl Fn(&mut Garment)) -> CharacterDef {
     adjust(&mut garment);
     let analysis = analyze(&rig).expect("the mannequin has a skin");
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
-    def.set_motions(crate::mannequin::character().motions().clone()).expect("the file's clips can be played");
+    def.set_motions(crate::mannequin::character().motions().clone())
+        .expect("the mannequin's clips are valid");
     def.set_garments(&[garment]);
     def
 }

@@ -19,8 +19,7 @@ use sinew::physics::{BodyId, BodyKind, GroupId, World, WorldDef};
 use sinew::ragdoll::{Character, CharacterDef, State};
 use std::sync::Arc;
 
-/// Height of the mannequin, for which the cabin is built, and heights of characters that fit its door and stairs,
-/// metres.
+/// Height for which the cabin is built, and range of heights of characters that fit its door and stairs, metres.
 const MANNEQUIN: f32 = 1.8;
 const FITTING: core::ops::RangeInclusive<f32> = 1.3..=2.3;
 /// Distance from the position behind the door to the start, metres: the wall hides a character at the start.
@@ -95,7 +94,7 @@ struct Staged {
     start: Transform,
     colors: Vec<(BodyId, [f32; 3])>,
     character: Character,
-    /// Number of steps since the character last stood up or fell.
+    /// Number of steps since the character last got up or fell.
     since: u32,
     /// Part of the run; `None` until the push.
     was: Option<Part>,

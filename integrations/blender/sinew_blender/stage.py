@@ -75,7 +75,7 @@ def _may_move(ob):
 
 
 def world(scene, arms, first, last, fps, unit):
-    """Colliders in metres; `unit`: metres of a unit of Blender."""
+    """Returns the scene's colliders, in metres; `unit`: metres per Blender unit."""
     sinew = bridge.engine()
     made = []
     settings = scene.sinew

@@ -1,5 +1,5 @@
-//! Charts of the landing page: time of the mean step against the largest gap of a joint, an SVG for each scene. Scenes that were measured at
-//! several efforts show each as a dot, joined by a line for each engine.
+//! Charts of the landing page: time of the mean step against the largest gap of a joint, an SVG for each scene. Scenes
+//! that were measured at several efforts show each as a dot, joined by a line for each engine.
 
 use super::figures::{self, GAP, came_apart, rounded};
 use super::page::title;
@@ -232,7 +232,8 @@ mod tests {
     /// The charts agree with the committed page of results.
     #[test]
     fn charts_agree_with_the_page() {
-        let page = fs::read_to_string(command::root().join("docs/benchmarks.md")).expect("the page");
+        let page =
+            fs::read_to_string(command::root().join("docs/benchmarks.md")).expect("the page can be read");
         let results = super::super::kept();
         charts(&results).expect("all scenes were measured");
         for name in SCENES {

@@ -47,7 +47,7 @@ pub fn measure() -> Result<Vec<String>> {
     print!("{}\n{}", table(&figures), Machine::this());
     let shortfalls = shortfalls(&figures);
     for line in &shortfalls {
-        println!("falls short: {line}");
+        println!("misses its share: {line}");
     }
     Ok(shortfalls)
 }

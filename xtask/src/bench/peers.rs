@@ -293,7 +293,7 @@ mod tests {
     use super::*;
 
     fn shell(script: &str, limit: Duration) -> Result<String, String> {
-        output_within(Command::new("sh").args(["-c", script]), limit).expect("there is a shell")
+        output_within(Command::new("sh").args(["-c", script]), limit).expect("the shell starts")
     }
 
     #[test]

@@ -25,11 +25,11 @@ pub enum Verdict {
 pub struct Speed {
     /// Wording of the requirement in the specification.
     pub work: &'static str,
-    /// Bar of the requirement.
+    /// Required value.
     pub bar: Bar,
 }
 
-/// Bar of a [`Speed`].
+/// Required value of a [`Speed`].
 pub enum Bar {
     /// A factor with a required minimum and a goal.
     Factor { must: f64, goal: f64, measure: Measure },
@@ -44,9 +44,10 @@ pub enum Measure {
     Peers(&'static str),
     /// A scene: the fastest peer's 99th percentile over Sinew's.
     PeersP99(&'static str),
-    /// Like `Peers`, but without peers whose joints came apart; if none is left, there is no requirement.
+    /// Like `Peers`, but only against peers whose joints stayed together. If there are none, there is no requirement.
     PeersTogether(&'static str),
-    /// Like `Peers`, but without peers whose metric exceeds a bound; if Sinew's exceeds it, the requirement is missed.
+    /// Like `Peers`, but only against peers whose metric is within a bound. If Sinew's exceeds it, the requirement is
+    /// missed.
     PeersWithin(&'static str, &'static Figure, f64),
     /// A metric of characters that fall limp until they sleep, in seconds per second.
     Limp(&'static str),
@@ -227,7 +228,7 @@ const fn as_peers(scene: &'static str, figure: &'static Figure) -> Hold {
     Hold { scene, figure, most: Most::BestPeer }
 }
 
-/// Requirements on joints: they do not stretch.
+/// Requirements on joints, which must not open.
 pub const HOLDS: &[Hold] = &[
     hold("chain_swing_1000", &GAP, 1e-3),
     hold("chain_swing_1000_half", &GAP, 1e-3),
@@ -247,7 +248,7 @@ pub const HOLDS: &[Hold] = &[
     hold("crowd_pile", &LIMITS, 0.0),
 ];
 
-/// Requirements on stacks, which stand, and on heaps, which fall asleep.
+/// Requirements on stacks, which must stand, and on heaps, which must fall asleep.
 pub const STANDS: &[Hold] = &[
     as_peers("box_pyramid", &SHIFT),
     as_peers("box_pyramid", &DEPTH),
@@ -347,7 +348,7 @@ mod tests {
     }
 
     fn speed(work: &str) -> &'static Speed {
-        SPEEDS.iter().find(|speed| speed.work == work).expect("the table has it")
+        SPEEDS.iter().find(|speed| speed.work == work).expect("the table has the row")
     }
 
     #[test]
@@ -408,7 +409,7 @@ mod tests {
     #[test]
     fn scenes_that_never_sleep_miss() {
         let asleep = |step: Option<u32>| json!({ "asleep_step": step });
-        let ragdolls = STANDS.iter().find(|hold| hold.scene == "ragdolls").expect("the table has it");
+        let ragdolls = STANDS.iter().find(|hold| hold.scene == "ragdolls").expect("the table has the row");
         let judge = |ours| {
             let peer = engine("box3d", &[1.0], &asleep(Some(307)));
             ragdolls.judge(&of("ragdolls", engine("sinew", &[1.0], &asleep(ours)), peer))
@@ -421,7 +422,7 @@ mod tests {
     #[test]
     fn joints_hold_or_not() {
         let gap = |gap: f64| json!({ "joint_gap_peak_m": gap });
-        let net = HOLDS.iter().find(|hold| hold.scene == "net").expect("the table has it");
+        let net = HOLDS.iter().find(|hold| hold.scene == "net").expect("the table has the row");
         let judge = |ours, theirs| {
             let results =
                 of("net", engine("sinew", &[1.0], &gap(ours)), engine("rapier", &[1.0], &gap(theirs)));

@@ -14,8 +14,8 @@ pub struct Results {
     pub bake: Option<f64>,
     /// Number of conversions of a rig of 6,000 vertices to a ragdoll in 100 ms, if measured with the bake.
     pub build: Option<f64>,
-    /// Simulated seconds per processor second of limp characters until they sleep: `median` of all rigs and `slowest_humanoid`,
-    /// if measured.
+    /// Simulated seconds per processor second of limp characters until they sleep: `median` of all rigs and
+    /// `slowest_humanoid`, if measured.
     pub limp: BTreeMap<String, f64>,
     /// Wall time on one thread over that on two, by scene, if measured.
     pub threads: BTreeMap<String, f64>,
@@ -45,7 +45,8 @@ pub struct EngineResult {
     pub reports: Vec<Value>,
 }
 
-/// Processor time of a step, milliseconds: each field is a statistic over the steps of a round, and its median over the rounds.
+/// Processor time of a step, milliseconds: each field is a statistic over the steps of a round, and its median over the
+/// rounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
     /// Mean step: the time of the whole run divided by its steps, impacts and sleep included.

@@ -21,7 +21,7 @@ impl Table {
     /// If the row is not as wide as the heading.
     pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
         let row: Vec<String> = cells.into_iter().map(Into::into).collect();
-        assert_eq!(row.len(), self.rows[0].len(), "a row is as wide as the heading: {row:?}");
+        assert_eq!(row.len(), self.rows[0].len(), "a row must have as many cells as the heading: {row:?}");
         self.rows.push(row);
     }
 

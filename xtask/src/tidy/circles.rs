@@ -23,7 +23,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
         for circle in circles(&source.arrows()).into_iter().filter(|circle| circle.len() > CIRCLE_FILES_MAX) {
             let names: Vec<&str> = circle.iter().map(|&at| source.modules[at].inside).collect();
             let message = format!(
-                "{} files name each other in a circle, at most {CIRCLE_FILES_MAX}: {}",
+                "{} files form a dependency cycle, at most {CIRCLE_FILES_MAX}: {}",
                 names.len(),
                 names.join(", ")
             );
@@ -40,7 +40,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     findings
 }
 
-/// Metrics of a crate's files and names, a row of the table.
+/// Metrics of a crate's files and names: a row of the table.
 pub struct House<'a> {
     pub name: &'a str,
     /// Number of source files, without tests.
@@ -93,7 +93,7 @@ pub struct Import<'a> {
     pub is_public: bool,
 }
 
-/// A definition: the module, and whether the name was found there or only expected.
+/// Result of resolving a path: the module, and whether the name was found there or is only expected there.
 type Found = Option<(usize, bool)>;
 
 impl<'a> Source<'a> {
@@ -285,7 +285,7 @@ struct Search<'a> {
     arrows: &'a [BTreeSet<usize>],
     /// Order in which each module was visited.
     order: Vec<Option<usize>>,
-    /// Earliest module that each module leads back to.
+    /// Earliest visited module that is reachable from each module.
     low: Vec<usize>,
     stack: Vec<usize>,
     visited: usize,

@@ -1,5 +1,5 @@
-//! Compares the code map of `ARCHITECTURE.md` with the code: every named file exists, and every file and folder at the top of a crate is
-//! named.
+//! Compares the code map of `ARCHITECTURE.md` with the code: every named file exists, and every file and folder at the
+//! top of a crate is named.
 
 use super::{Finding, Repo};
 
@@ -7,7 +7,8 @@ const MAP: &str = "ARCHITECTURE.md";
 /// Other pages with names of files.
 const PAGES: &[&str] = &["CONTRIBUTING.md", "docs/step.md", "docs/glossary.md"];
 
-/// Checks that each section of a crate names its files and folders, and no others; and that files named by other pages exist.
+/// Checks that each section of a crate names its files and folders, and no others; and that files named by other pages
+/// exist.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings: Vec<Finding> = PAGES.iter().flat_map(|page| missing(repo, page)).collect();
     findings.extend(check_map(repo));

@@ -1,4 +1,4 @@
-//! Every external crate has its row in the ADR, and is declared in the root manifest.
+//! Checks that every external crate has a row in ADR 0007 and is declared in the root manifest.
 
 use super::{Finding, Repo};
 

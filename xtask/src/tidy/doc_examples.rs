@@ -15,8 +15,8 @@ const MOST_LINES: usize = 60;
 /// fight over a network, a character with all its accessories.
 const LONGER: &[&str] = &["door_and_cape", "flock", "pendulum_clock", "probes", "rollback_fight"];
 
-/// Finds public modules of those crates without an example that is compiled and run, and examples that are too long or use names outside
-/// the prelude.
+/// Finds public modules of those crates without an example that is compiled and run, and examples that are too long or
+/// use names outside the prelude.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
     for file in repo.rust_files() {

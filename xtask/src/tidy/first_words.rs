@@ -1,4 +1,5 @@
-//! First lines of documentation stand alone in an editor's hover: they begin with a sentence or a noun, not with a fragment.
+//! First lines of documentation stand alone in an editor's hover: they begin with a sentence or a noun, not with a
+//! fragment.
 
 use super::{File, Finding, Repo};
 
@@ -21,7 +22,7 @@ fn fragments(file: &File) -> Vec<Finding> {
             let word = text.trim_start().split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
             if FRAGMENTS.contains(&word) {
                 let message = format!(
-                    "a first line of docs does not begin with `{word}`: it stands alone in a hover, so it names the thing"
+                    "the first line of a doc comment must not begin with `{word}`: shown alone in a hover, it must name the item"
                 );
                 findings.push(Finding::new(&file.path, index + 1, message));
             }

@@ -25,7 +25,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
             findings.push(Finding::new(&page.path, 1, format!("not in {CONTENTS}")));
         }
         if page.text.contains("```rust") && !tests.contains(&format!("/{}\"", page.path)) {
-            let message = format!("its code is not tested: neither in {TESTED} nor in {TESTED_IN_BEVY}");
+            let message = format!("the page's code is tested neither in {TESTED} nor in {TESTED_IN_BEVY}");
             findings.push(Finding::new(&page.path, 1, message));
         }
         for (index, line) in page.text.lines().enumerate() {

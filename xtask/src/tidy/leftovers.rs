@@ -1,4 +1,4 @@
-//! Paths of one machine, unfinished code, and marks of merge conflicts.
+//! Finds paths of one machine, unfinished code, and markers of merge conflicts.
 
 use super::{Finding, Repo, lexer};
 
@@ -28,7 +28,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     for file in &repo.files {
         for mark in CONFLICTS.iter().map(|&(mark, count)| String::from(mark).repeat(count) + " ") {
             for (index, _) in file.text.lines().enumerate().filter(|(_, line)| line.starts_with(&mark)) {
-                findings.push(Finding::new(&file.path, index + 1, "a merge conflict that nobody resolved"));
+                findings.push(Finding::new(&file.path, index + 1, "an unresolved merge conflict"));
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Forbidden in libraries: files, clocks, logs, globals, the process around them.
+//! Finds what libraries must not use: files, clocks, logs, globals, the process and its environment.
 
 use super::lexer::{self, Kind, Token};
 use super::{File, Finding, Repo};

@@ -1,4 +1,4 @@
-//! Names at the roots of the libraries: a list that changes only on purpose, in which no name has two meanings.
+//! Checks the public names at the roots of the libraries against a committed list, in which each type's name is unique.
 
 use super::circles::{self, Import};
 use super::lexer;

@@ -1,4 +1,5 @@
-//! Characters and bakes in Python: a list of all their Rust names, each with its name in Python or the reason why it has none.
+//! Checks the list of all Rust names of characters and bakes, each with its name in Python or the reason why it has
+//! none.
 
 use super::lexer::{Kind, Token};
 use super::{Finding, Repo};

@@ -1,9 +1,11 @@
-//! Allowed dependencies between the rooms of a crate, which are the folders and files directly in its `src/`.
+//! Allowed dependencies between the modules of a crate ("rooms"), which are the folders and files directly in its
+//! `src/`.
 
 use super::lexer::{self, Kind, Token};
 use super::{File, Finding, Repo};
 
-/// Crates with rooms. The rooms of each crate are ordered from the lowest up: a room may depend on those before it.
+/// Crates with layered modules. The modules of each crate are listed from the lowest layer up: a module may depend only
+/// on those before it.
 const ROOMS: &[(&str, &[&str])] = &[(
     "sinew_physics",
     &[
@@ -33,7 +35,7 @@ const ROOMS: &[(&str, &[&str])] = &[(
     ],
 )];
 
-/// Existing upward dependencies, by file and room. Entries may be removed but not added.
+/// Existing upward dependencies, by file and module. Entries may be removed but not added.
 const EXCEPTIONS: &[(&str, &str)] = &[
     // A step accesses the whole world, because the user's objects and the movers act on it within the step.
     ("crates/sinew_physics/src/step/mod.rs", "world"),
@@ -50,16 +52,16 @@ const EXCEPTIONS: &[(&str, &str)] = &[
 
 /// Largest number of upward dependencies.
 const EXCEPTIONS_MAX: usize = 10;
-const _: () = assert!(EXCEPTIONS.len() <= EXCEPTIONS_MAX, "too many arrows back up");
+const _: () = assert!(EXCEPTIONS.len() <= EXCEPTIONS_MAX, "there are too many upward dependencies");
 
-/// Returns the number of upward dependencies in a crate; `None` if it has no rooms.
+/// Returns the number of upward dependencies in a crate; `None` if its modules are not layered.
 pub fn arrows_back_up(name: &str) -> Option<usize> {
     let source = format!("crates/{name}/");
     let has_rooms = ROOMS.iter().any(|&(with_rooms, _)| with_rooms == name);
     has_rooms.then(|| EXCEPTIONS.iter().filter(|(file, _)| file.starts_with(&source)).count())
 }
 
-/// Checks that dependencies between rooms go down, except for the listed ones; every exception must be needed.
+/// Checks that modules depend only on lower ones, except for the listed exceptions, each of which must be needed.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     check_rooms(repo, ROOMS, EXCEPTIONS)
 }
@@ -74,7 +76,7 @@ fn check_rooms(repo: &Repo, crates: &[(&str, &[&str])], exceptions: &[(&str, &st
         let files = || repo.rust_files().filter(|file| file.crate_of_source() == Some(name));
         for file in files().filter(|file| file.path != root && !is_test(file, repo)) {
             let Some(own) = rooms.iter().position(|&room| room == room_of(file)) else {
-                let message = format!("no room of {name} in xtask/src/tidy/rooms.rs");
+                let message = format!("this module of {name} is not listed in xtask/src/tidy/rooms.rs");
                 findings.push(Finding::new(&file.path, 1, message));
                 continue;
             };
@@ -96,12 +98,16 @@ fn check_rooms(repo: &Repo, crates: &[(&str, &[&str])], exceptions: &[(&str, &st
     }
     let unneeded = exceptions.iter().zip(needed).filter(|(_, needed)| !needed);
     findings.extend(unneeded.map(|((file, room), _)| {
-        Finding::new(file, 1, format!("no longer names `{room}`: remove it from the exceptions of rooms.rs"))
+        Finding::new(
+            file,
+            1,
+            format!("no longer depends on `{room}`: remove it from the exceptions of rooms.rs"),
+        )
     }));
     findings
 }
 
-/// Returns the room of a file: its top folder in `src/`, or the file itself.
+/// Returns the layered module of a file: its top folder in `src/`, or the file itself.
 fn room_of(file: &File) -> &str {
     let inside = file.path.splitn(4, '/').nth(3).unwrap_or_default();
     inside.split('/').next().unwrap_or_default().trim_end_matches(".rs")
@@ -117,7 +123,7 @@ pub fn is_test(file: &File, repo: &Repo) -> bool {
         })
 }
 
-/// Returns the names that `lib.rs` re-exports, each with its room.
+/// Returns the names that `lib.rs` re-exports, each with its layered module.
 fn exports(lib: &File) -> Vec<(&str, &str)> {
     let tokens = lib.tokens();
     let mut exports = Vec::new();
@@ -228,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_without_a_room_is_found() {
+    fn unlisted_module_is_found() {
         assert_eq!(check_files(&[("crates/sinew_math/src/shed.rs", "")], &[]).len(), 1);
     }
 }

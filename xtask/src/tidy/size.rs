@@ -28,8 +28,8 @@ struct Exception {
     line: usize,
 }
 
-/// Checks that no piece exceeds its limit, except for the exceptions, each with its exact length; and that every exception is
-/// needed.
+/// Checks that no piece exceeds its limit, except for the exceptions, each with its exact length; and that every
+/// exception is needed.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     check_up_to(repo, EXCEPTIONS_MAX)
 }
@@ -140,7 +140,7 @@ mod tests {
     #[test]
     fn exceptions_are_accepted_and_may_only_shrink() {
         assert!(check_with("crates/sinew/src/lib.rs long 80 # why\n", 80).is_empty());
-        assert_eq!(check_with("crates/sinew/src/lib.rs long 80", 81).len(), 1, "it may not grow");
+        assert_eq!(check_with("crates/sinew/src/lib.rs long 80", 81).len(), 1, "an exception must not grow");
         assert_eq!(
             check_with("crates/sinew/src/lib.rs long 80", 75),
             ["xtask/exceptions.txt:1: has shrunk: lower it to 75"]

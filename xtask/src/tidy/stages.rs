@@ -42,7 +42,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
         findings.push(Finding::new(STAGE, *line, format!("stage `{name}` is where {MANUAL} has `{other}`")));
     }
     if findings.is_empty() && drawn(&manual.text, &coded).is_some_and(|drawn| drawn != coded.len()) {
-        findings.push(Finding::new(MANUAL, 1, "the diagram has not all stages in their order"));
+        findings.push(Finding::new(MANUAL, 1, "the diagram does not have all stages in their order"));
     }
     findings
 }
@@ -97,7 +97,7 @@ mod tests {
     const CODE: &str = "pub enum Stage {\n /// Doc.\n Pairs,\n #[default]\n IntegrateVelocity\n}";
 
     #[test]
-    fn same_names_in_the_same_order_are_fine() {
+    fn same_stages_in_the_same_order_are_accepted() {
         assert!(check_stages(CODE, "# Step\n## `pairs`\n## Notes\n## `integrate_velocity`\n").is_empty());
     }
 

@@ -1,4 +1,4 @@
-//! Constants of behaviour are in the `tuning.rs` of their room, where each states the effect of a change.
+//! Constants that tune behaviour are in a file `tuning.rs` of their module, where each states the effect of a change.
 
 use super::lexer::{self, Kind};
 use super::rooms::is_test;
@@ -7,8 +7,9 @@ use super::{Finding, Repo};
 /// Crates whose constants of behaviour are in such files.
 const CRATES: &[&str] = &["sinew_physics", "sinew_anim", "sinew_ragdoll"];
 
-/// Other constants: bounds of rounding, of representable values, of a series; a unit; sizes that are only drawn; a table of
-/// anatomy, a drop of the contract, the verdict's thresholds. Listed by file and name; the list may only shrink.
+/// Constants that do not tune behaviour, by file and name: bounds of rounding, of representable values and of series,
+/// units, sizes in drawings, anatomical tables, the specified drop test, the verdict's thresholds. Entries may only be
+/// removed.
 const OTHERS: &[(&str, &str)] = &[
     ("sinew_anim/src/animator/advance.rs", "SHORTEST"),
     ("sinew_anim/src/animator/fire.rs", "MOMENT"),
@@ -70,7 +71,8 @@ const OTHERS: &[(&str, &str)] = &[
     ("sinew_ragdoll/src/skin/judge.rs", "SUNK"),
 ];
 
-/// Checks that every float constant is in a `tuning.rs` or listed, and that every constant in a `tuning.rs` names a scene or test.
+/// Checks that every float constant is in a `tuning.rs` or listed, and that every constant in a `tuning.rs` names a
+/// scene or test.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut needed = vec![false; OTHERS.len()];
@@ -104,7 +106,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
                 Some(other) => needed[other] = true,
                 None => {
                     let message = format!(
-                        "`{name}` belongs into a `tuning.rs`, with unit, reason and consequences; or lists it as another kind of number: see xtask/src/tidy/tuning.rs"
+                        "`{name}` belongs in a `tuning.rs`, with unit, reason and consequences; if it is another kind of number, list it in xtask/src/tidy/tuning.rs"
                     );
                     findings.push(Finding::new(&file.path, line, message));
                 }

@@ -1,4 +1,4 @@
-//! Modules that may contain `unsafe` (design §5).
+//! Checks that `unsafe` is only in the modules that may contain it (design §5).
 
 use super::lexer;
 use super::{Finding, Repo};
@@ -17,8 +17,8 @@ const ALLOWED: &[&str] = &[
     "bindings/web/src",
 ];
 
-/// Checks that `unsafe` is only in the modules above. Every crate root forbids it, or, where the crate has one of those modules
-/// (`forbid` cannot be lifted), denies it.
+/// Checks that `unsafe` is only in the modules above. Every crate root forbids it, or, where the crate has one of those
+/// modules (`forbid` cannot be lifted), denies it.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
     for file in repo.rust_files() {
@@ -69,13 +69,16 @@ mod tests {
     }
 
     #[test]
-    fn a_root_that_does_not_forbid_it_is_found() {
+    fn crate_root_that_does_not_forbid_unsafe_is_found() {
         check_lines(check, "crates/sinew_anim/src/lib.rs", "pub mod pose;", &[1]);
         check_lines(check, "crates/sinew_anim/src/lib.rs", "#![forbid(unsafe_code)]\npub mod pose;", &[]);
         let root = ("crates/sinew_math/src/lib.rs", "#![deny(unsafe_code)]");
         let lanes = ("crates/sinew_math/src/lanes/sse.rs", "unsafe fn f() {}");
-        assert_eq!(check(&Repo::planted(&[root])).len(), 1, "nothing in the crate needs it");
-        assert!(check(&Repo::planted(&[root, lanes])).is_empty(), "a crate that needs it cannot forbid it");
+        assert_eq!(check(&Repo::planted(&[root])).len(), 1, "a crate without `unsafe` must forbid it");
+        assert!(
+            check(&Repo::planted(&[root, lanes])).is_empty(),
+            "a crate with allowed `unsafe` must only deny it"
+        );
         assert_eq!(check(&Repo::planted(&[("crates/sinew_math/src/lib.rs", ""), lanes])).len(), 1);
     }
 }

@@ -169,12 +169,12 @@ fn reasons(rows: &[Row]) -> String {
         }
         let of_drops = &row.report["build"]["quality"]["reasons"];
         let of_bake = &row.report["bake"]["notes"];
-        // No file has clips in its drops: that reason is left out.
+        // Leaves out the reason that no clip is played, because it applies to the drops of every file.
         let reason_texts = of_drops.as_array().into_iter().flatten().filter_map(Value::as_str);
         for reason in reason_texts.filter(|reason| !reason.starts_with("hand-over")) {
             let _ = writeln!(text, "- {}: {reason}", row.file);
         }
-        // The command asked for no get-up, so the note on it is left out.
+        // Leaves out the note on the missing get-up, because the command requested none.
         let noted = of_bake.as_array().into_iter().flatten().filter_map(Value::as_str);
         for note in noted.filter(|note| !note.starts_with("it does not get up")) {
             let _ = writeln!(text, "- {}, baked: {note}", row.file);

@@ -51,9 +51,9 @@ impl Code<3> for Bounds {
     }
 }
 
-/// A unit quaternion without its largest number, which follows from the other three. These are at most √½ and have 15
-/// bits each, with 0 exact. Of the three remaining bits, two name the largest number and one is its sign, so that keys
-/// of a track stay on one hemisphere.
+/// A unit quaternion without its component of largest magnitude, which follows from the other three. These are at most
+/// √½ and have 15 bits each, with 0 exact. Of the three remaining bits, two name the omitted component and one is its
+/// sign, so that keys of a track stay on one hemisphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct SmallestThree;
 

@@ -43,7 +43,7 @@ pub fn find_clip(clips: &[Clip], name: &str) -> Result<usize, String> {
                 called => called,
             })
             .collect();
-        return Err(format!("'{name}' may be {} clips: {}", several.len(), few(&names)));
+        return Err(format!("'{name}' matches {} clips: {}", several.len(), few(&names)));
     }
     let names: Vec<String> =
         clips.iter().enumerate().map(|(index, clip)| called(index, &clip.name)).collect();
@@ -66,7 +66,7 @@ fn words(name: &str) -> Vec<String> {
             words.push(String::new());
         }
         if c.is_alphanumeric() {
-            words.last_mut().expect("there is one").extend(c.to_lowercase());
+            words.last_mut().expect("a word has been started").extend(c.to_lowercase());
         }
         last = c;
     }
@@ -131,9 +131,9 @@ mod tests {
         for (wanted, index) in wanted {
             assert_eq!(found(&names, wanted), Ok(index), "{wanted}");
         }
-        let two = "'run' may be 2 clips: Run_Fast, Run_Slow";
+        let two = "'run' matches 2 clips: Run_Fast, Run_Slow";
         assert_eq!(found(&["Run_Fast", "Run_Slow"], "run"), Err(two.into()));
-        let three = "'walk' may be 2 clips: A|Walk (number 0), A|Walk (number 2)";
+        let three = "'walk' matches 2 clips: A|Walk (number 0), A|Walk (number 2)";
         assert_eq!(found(&["A|Walk", "A|Run", "A|Walk"], "walk"), Err(three.into()));
         // A word common to all clips does not distinguish them; a word may be a prefix.
         assert_eq!(found(&["Rig|Walk", "Rig|Walk_Gun", "Rig|Idle"], "walk"), Ok(0));

@@ -346,7 +346,7 @@ impl Convert {
 
 /// Draws a movie of the first of the output's last `new` clips.
 fn draw(outputs: &Outputs, new: usize, picture: &PictureFile) -> Result<Vec<u8>> {
-    let (path, bytes) = outputs.first().expect("something is written");
+    let (path, bytes) = outputs.first().expect("the command writes a file");
     let name = path.display().to_string();
     let gltf = ReadOptions { textures: Textures::Decode };
     let options = MotionOptions { gltf, ..MotionOptions::default() };

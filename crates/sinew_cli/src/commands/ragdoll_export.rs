@@ -54,7 +54,7 @@ impl Format {
 }
 
 impl RagdollExport {
-    /// Runs the command: reads the clips, converts them and writes the output.
+    /// Runs the command: reads or builds the ragdoll, converts it and writes the output.
     pub fn run(&self) -> Result<Report> {
         let output = self.output();
         let settings = self.settings.path_for(&self.file);

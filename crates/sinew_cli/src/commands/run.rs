@@ -91,7 +91,7 @@ impl Run {
         Err(Failure::Missed { report: Box::new(report), what })
     }
 
-    /// Returns true if the scene runs with its defaults; expectations apply only then.
+    /// Returns whether the scene runs with its default settings and steps. Expectations apply only then.
     fn is_by_default(&self) -> bool {
         self.settings.is_empty() && self.steps.is_none() && matches!(self.quality, QualityName::Balanced)
     }

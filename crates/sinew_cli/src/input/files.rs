@@ -82,7 +82,7 @@ impl CharacterFile {
         let source = CharacterSource::new(document, &path.to_string_lossy());
         let source = source.map_err(|no_skin| Failure::of_file(&name, no_skin))?;
         let mut file = Self { name, source };
-        // A file in metres is trusted; for others the neighbouring files may give more evidence.
+        // A file in metres needs no evidence; for others the neighbouring files may give more.
         if file.is_in_doubt() && file.analysis.unit_scale != 1.0 {
             let kin = units_beside(path);
             file.hint(&Hints { kin, ..file.analysis.hints.clone() })?;
@@ -100,7 +100,7 @@ impl CharacterFile {
         self.analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only)
     }
 
-    /// Takes other evidence into account.
+    /// Repeats the analysis with additional evidence for the unit.
     pub fn hint(&mut self, hints: &Hints) -> Result<()> {
         self.source.hint(hints).map_err(|no_skin| Failure::of_file(&self.name, no_skin))
     }
@@ -139,7 +139,7 @@ pub fn never_over<'a>(
     inputs: impl IntoIterator<Item = &'a Path>,
     outputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<()> {
-    // Both paths may be spelled differently; a file that does not exist yet is no input.
+    // Compares canonical paths, because one file can have several paths. A file that does not exist yet is no input.
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     let inputs: Vec<PathBuf> = inputs.into_iter().filter_map(real).collect();
     match outputs.into_iter().find(|output| real(output).is_some_and(|output| inputs.contains(&output))) {

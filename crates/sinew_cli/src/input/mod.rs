@@ -1,4 +1,4 @@
-//! Input of commands: files, scenes and settings given as arguments.
+//! Input of commands: reads the files, scenes and settings that the arguments name.
 
 pub(crate) mod files;
 pub(crate) mod kin;

@@ -6,7 +6,7 @@ use crate::report::table::shown;
 use sinew::anim::retarget::{Body, RetargetOptions, Retargeted, retarget};
 use sinew::anim::{Channel, Clip, ClipEvent, JointIdx, LocalTransform, Rig, RigAnalysis};
 
-/// A clip of another rig converted to the character's.
+/// A clip of another rig, converted to the character's rig.
 pub struct Carried {
     /// Clip of the character's joints.
     pub clip: Clip,

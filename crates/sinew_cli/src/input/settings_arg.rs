@@ -166,8 +166,9 @@ impl SettingsArg {
         self.load_into(path, textures, || None, true)
     }
 
-    /// Reads a character like [`Self::load_character`], for a world, whose door height (metres) is requested if the
-    /// unit is in doubt; with or without making the listed meshes garments.
+    /// Reads a character like [`Self::load_character`] for a world, whose door height (metres) is requested if the
+    /// unit is
+    /// in doubt. Optionally converts the listed meshes to garments.
     pub fn load_into(
         &self,
         path: &Path,

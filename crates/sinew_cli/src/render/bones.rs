@@ -39,8 +39,8 @@ pub fn add_bone_models(rig: &mut Rig, analysis: Option<&RigAnalysis>) {
     rig.meshes.push(RigMesh { name: "bones".into(), joint: 0, skin, primitives: vec![bones] });
 }
 
-/// Returns, for each joint, the joint that carries its bones: a joint that coincides with its parent (CMU captures have
-/// eleven) uses the parent's.
+/// Returns, for each joint, the joint to which its bones are skinned: for a joint that coincides with its parent (CMU
+/// captures have eleven), that of the parent, else the joint itself.
 fn carriers(rig: &Rig, model: &[Affine]) -> Vec<JointIdx> {
     let reach =
         |from: Vec3| model.iter().map(|joint| (joint.translation - from).length()).fold(0.0, f32::max);

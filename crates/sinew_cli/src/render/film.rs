@@ -108,7 +108,7 @@ impl<'a> Shots<'a> {
             bodies: Vec::new(),
         };
         if view == View::Whole {
-            // A camera that followed a fall out of the world would be far from all else.
+            // A camera that followed a fall out of the world would show nothing else.
             let end = fallen_out(fall.input, &fall.baked).map_or(f32::INFINITY, |(time, _)| time);
             let boxes: Vec<Aabb> = (0..frames)
                 .map(|frame| {
@@ -256,7 +256,7 @@ mod tests {
         let fall = Fall::simulate(&input, None);
         let events = &fall.baked.events;
         let at = |what: fn(&CharacterEvent) -> bool| {
-            events.iter().find(|(_, event)| what(event)).expect("the event occurs").0
+            events.iter().find(|(_, event)| what(event)).expect("the event must occur").0
         };
         let hit = at(|event| matches!(event, CharacterEvent::Hit { .. }));
         let settled = events.iter().find_map(|(_, event)| match event {
@@ -265,7 +265,7 @@ mod tests {
         });
         let rises = at(|event| matches!(event, CharacterEvent::GettingUp { .. }));
         let up = at(|event| matches!(event, CharacterEvent::Up));
-        let settled = settled.expect("the camera settles");
+        let settled = settled.expect("the character must come to rest");
         let frames = (fall.input.seconds * FPS as f32) as u32 + 1;
         let film = Film {
             fall: &fall,

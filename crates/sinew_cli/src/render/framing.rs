@@ -32,7 +32,7 @@ impl Framing {
     /// # Panics
     /// If there is no box.
     pub fn new(boxes: &[Aabb], fps: f32, direction: Vec3) -> Self {
-        let whole = boxes.iter().copied().reduce(|a, b| a.merge(&b)).expect("there is a picture");
+        let whole = boxes.iter().copied().reduce(|a, b| a.merge(&b)).expect("at least one box is given");
         let size = |bounds: &Aabb| (bounds.max - bounds.min).length();
         let largest = boxes.iter().map(size).fold(0.0, max);
         let reach = (CALM * fps) as usize;

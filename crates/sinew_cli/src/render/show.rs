@@ -44,7 +44,7 @@ impl Show {
     pub fn new(motion: Motion, clip: Option<usize>) -> Result<Self> {
         let Motion { name, file, analysis } = motion;
         let mut rig = file.rig;
-        // A mesh beside a body without skin does not show the body.
+        // A mesh next to a skeleton without a skin does not show the body's motion.
         if rig.meshes.is_empty() || rig.skins.is_empty() && analysis.is_some() {
             add_bone_models(&mut rig, analysis.as_ref());
         }
@@ -100,7 +100,7 @@ impl Show {
         // The first pass measures the extent, the second draws.
         let outline = skin::outline(&self.rig);
         let boxes: Vec<Aabb> = (0..frames).map(|frame| around(&outline, &self.pose(time(frame)))).collect();
-        let whole = boxes.iter().copied().reduce(|a, b| a.merge(&b)).expect("there is a frame");
+        let whole = boxes.iter().copied().reduce(|a, b| a.merge(&b)).expect("the movie has a frame");
         let framing = Framing::new(&boxes, FPS as f32, DIRECTION);
         let progress = Progress::new("drawing", frames);
         let mut stage = Stage::new(self, framing, whole, settings);

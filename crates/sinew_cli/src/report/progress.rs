@@ -3,7 +3,7 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 
-/// Minimum duration of work that shows a bar.
+/// Time after which the bar is shown.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A progress bar that appears once the work takes over a second, on a terminal only.

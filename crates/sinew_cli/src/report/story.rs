@@ -72,7 +72,8 @@ pub fn moments(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(
     for &(time, event) in events {
         let sentence = match event {
             CharacterEvent::Hit { body } => hit_sentence(input, time, body),
-            // A hit describes the fall better. A character that goes limp on its feet already touches the ground.
+            // Left out at a hit, which describes the fall better, and where the character goes limp while it stands on
+            // the ground.
             CharacterEvent::WentLimp if events.iter().any(|other| is_hit_at(other, time)) => continue,
             CharacterEvent::Touched
             | CharacterEvent::Struck { .. }

@@ -165,7 +165,7 @@ fn clips_are_found_by_words_ignoring_case() {
     }
     let line = bake("loop").refusal(1).to_owned();
     assert!(
-        line.contains("'loop' may be 2 clips: Armature|Idle_Loop, Armature|Walk_Loop (--clip)"),
+        line.contains("'loop' matches 2 clips: Armature|Idle_Loop, Armature|Walk_Loop (--clip)"),
         "{line}"
     );
     let bvh = folder.path("walk.bvh");

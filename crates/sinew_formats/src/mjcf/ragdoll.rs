@@ -174,7 +174,7 @@ fn outline(shape: &ShapeDef) -> Vec<Vec3> {
     points.into_iter().map(|p| shape.body_from_shape.point(p)).collect()
 }
 
-/// Returns the kind of joint for the ragdoll, and its axes in those of the model's joint.
+/// Returns the kind of the ragdoll's joint, and the transform from its frame to the frame of the MJCF joint.
 fn turning(joint: &MjcfJoint, notes: &mut Vec<String>) -> Result<(JointKind, Transform)> {
     let unsupported = |what: &str| {
         let name = quoted(&joint.name);

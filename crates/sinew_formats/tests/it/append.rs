@@ -214,7 +214,7 @@ fn inferred_weights_of_loose_vertices_are_written() {
     assert!(!moves(&document), "the neutral bone moves skin");
     let again = read(&append_clip(&document, &motion(&document), "moved", None).unwrap());
     assert_eq!(again.warnings, Vec::<String>::new(), "the file has no loose vertex any more");
-    assert!(again.rig.skins == document.rig.skins, "the skins are other ones");
+    assert!(again.rig.skins == document.rig.skins, "the skins differ");
     let parts = |document: &Document| document.rig.meshes[0].primitives.clone();
     for (new, old) in parts(&again).iter().zip(parts(&document)) {
         assert!(new.positions == old.positions && new.joints == old.joints && new.indices == old.indices);

@@ -33,7 +33,7 @@ pub(crate) struct Crossed<'a> {
     a: &'a PlacedBox,
     b: &'a PlacedBox,
     offset: Vec3,
-    /// `cosine[i][j]` is axis `i` of A times axis `j` of B.
+    /// `cosine[i][j]` is the dot product of axis `i` of A and axis `j` of B.
     cosine: [[f32; 3]; 3],
 }
 

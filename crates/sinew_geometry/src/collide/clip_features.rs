@@ -21,7 +21,7 @@ pub(super) struct Clipped {
 #[derive(Clone, Copy, Default)]
 struct Outline {
     at: Clipped,
-    /// Plane that contains the side from this corner to the next.
+    /// Edge of the incident feature or of the reference face that contains the side from this corner to the next.
     side: Side,
 }
 

@@ -138,7 +138,8 @@ impl Feature {
         }
     }
 
-    /// Returns the end of a cylinder or cone as an octagon, or the line along its side.
+    /// Returns the feature of a cylinder or cone that extends furthest along `direction`: an end as an octagon, or the
+    /// line along its side.
     pub fn of_truncated_cone(cone: &TruncatedCone, direction: Vec3) -> Self {
         let side = cone.side_normal();
         let out = normalize_or(Vec3::new(direction.x, 0.0, direction.z), Vec3::X);

@@ -99,8 +99,8 @@ pub(crate) struct IslandSolver {
     unconstrained: Vec<Vec6>,
     /// Velocities after the position update, before `relax`.
     moved: Vec<Vec6>,
-    /// Impulses on bodies after the position update from all sources except their joints; impulses of contacts and loops before the
-    /// update count negative.
+    /// Impulses applied to each body after the position update by everything except its joints, minus the impulses of contacts
+    /// and loops before the update.
     accounted: Vec<Vec6>,
     /// True if fields or lasting forces act and are evaluated in each substep.
     forces_vary: bool,

@@ -44,8 +44,8 @@ pub(super) const GRADED_RATIO: f32 = 100.0;
 
 /// Number of trees of joints above which an island is solved by turns.
 ///
-/// The cost of the response of all links grows with trees times contacts (ADR 0017). Sensible from 1 to 16. Larger: heaps of some ragdolls
-/// take half as long again. Smaller: single ragdolls press 6 mm into each other when they hit. Shown by `brawl` (above) and `ragdoll_poses`
+/// The cost of the response of all links grows with trees times contacts (ADR 0017). Sensible from 1 to 16. Larger: heaps of a few ragdolls
+/// take 1.5 times as long. Smaller: two colliding ragdolls penetrate each other by 6 mm. Shown by `brawl` (above) and `ragdoll_poses`
 /// (below).
 pub(super) const RESPONSE_TREES: usize = 2;
 
@@ -479,7 +479,7 @@ pub(super) const MOTOR_SHARE: f32 = 1e-3;
 /// `joints::an_undamped_spring_keeps_its_period_and_energy`, `spring`.
 pub(super) const FASTEST_SPRING: f32 = 1.0;
 
-/// Factor on the least damping with which springs on small masses are stable, a number.
+/// Safety factor for the least damping at which a spring on a small mass is stable, dimensionless.
 ///
 /// A spring with less damping uses implicit Euler: a pin that carries a ragdoll by its hand must not shake if only the hand moves. Larger:
 /// more springs lose their exact poles. Below 1: such pins shake. Sensible from 1 to 2. Shown by the test

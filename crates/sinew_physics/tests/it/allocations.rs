@@ -15,7 +15,8 @@ use sinew_physics::*;
 /// Steps after which the boxes are moved back to their start.
 const CYCLE: usize = 150;
 
-/// Boxes that fall in every cycle, and boxes that fall only in the first one: heaps differ from one fall to the next.
+/// Boxes that fall in every cycle, and additional boxes that fall only in the first one: they reserve memory for later
+/// cycles, because the heap differs from fall to fall.
 const BOXES: usize = 40;
 const MORE_BOXES: usize = 20;
 
@@ -25,8 +26,8 @@ const CYCLES: usize = 6;
 /// Steps until bodies on joints and springs are almost at rest.
 const SETTLE: usize = 400;
 
-/// Returns a world with all that a step can contain (loose boxes, a ragdoll, a chain, a ring of joints and a rope with
-/// a weight), and the boxes with their first poses.
+/// Returns a world with loose boxes, a ragdoll, a chain, a ring of joints and a rope with a weight; and the boxes with
+/// their initial poses.
 fn crowded() -> (World, Vec<(BodyId, Transform)>) {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     floor(&mut world);
@@ -89,7 +90,8 @@ fn ring(world: &mut World, count: u32) {
     }
 }
 
-/// Adds a rope from the world to a weight, which swings out of the boxes' reach: more boxes near it would need more memory.
+/// Adds a rope from the world to a weight, which swings out of the boxes' reach: a different number of boxes near it in
+/// each cycle would need more memory.
 fn rope(world: &mut World) {
     let (from, to) = (Vec3::new(0.0, 2.5, 20.0), Vec3::new(0.0, 1.5, 21.0));
     let weight = world.add_body(&sphere_body(0.15, to));
@@ -101,7 +103,7 @@ fn rope(world: &mut World) {
     world.add_particles(&rope);
 }
 
-/// Joins all moving bodies to one island by joints with all axes free.
+/// Joins all moving bodies into one island by joints whose axes are all free, and returns these joints.
 fn tie(world: &mut World) -> Vec<JointId> {
     let free = AxisMotion::Free;
     let six = SixDof { linear: [free; 3], twist: free, swing_y: free, swing_z: free };
@@ -174,7 +176,7 @@ fn a_warm_step_allocates_nothing() {
             "contacts must begin and end: {warm:?}"
         );
         assert!(warm.sensed > 10 && warm.hits > 20, "sensor overlaps and hits must be reported: {warm:?}");
-        assert_eq!(warm.allocations, 0, "{warm:?}");
+        assert_eq!(warm.allocations, 0, "a warm cycle must allocate nothing: {warm:?}");
     }
 }
 
@@ -221,7 +223,7 @@ fn falling_asleep_and_waking_allocate_nothing() {
             run(&mut world, 5, &mut last);
         }
     }
-    assert_eq!(last.allocations, 0, "{last:?}");
+    assert_eq!(last.allocations, 0, "the last cycle must allocate nothing: {last:?}");
 }
 
 #[test]
@@ -233,5 +235,5 @@ fn a_batch_of_rays_allocates_nothing() {
     let mut hits = vec![None; rays.len()];
     let seen = allocation_counter::measure(|| world.query().first_each(&rays, &mut hits));
     assert_eq!(seen.count_total, 0);
-    assert!(hits.iter().all(Option::is_some), "the floor is below");
+    assert!(hits.iter().all(Option::is_some), "every ray must hit the floor");
 }

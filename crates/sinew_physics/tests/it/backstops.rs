@@ -27,10 +27,10 @@ fn far_from_it(kind: BodyKind, frame: Transform) -> BodyDef {
     }
 }
 
-/// A particle on a spring beside a frictionless ball comes to rest where spring and gravity act along the normal. A
-/// particle without the ball passes through.
+/// A particle on a spring beside a frictionless ball comes to rest where the sum of spring force and gravity acts along
+/// the normal. A particle for which the ball is not a backstop passes through it.
 #[test]
-fn a_particle_rests_on_its_backstop() {
+fn particle_rests_on_its_backstop_without_friction() {
     let mut world = World::new(WorldDef::default());
     let frame =
         Transform::new(Vec3::new(0.4, 1.0, -0.3), Rotation::from_axis_angle(Vec3::ONE.normalize(), 0.7));
@@ -59,14 +59,21 @@ fn a_particle_rests_on_its_backstop() {
     assert!(deepest > reach - 1e-4, "the particle is {} m inside the ball", reach - deepest);
     let at = world.particles(stopped).positions()[1];
     let normal = (at - center).normalize();
-    assert!(((at - center).length() - reach).abs() < 2e-5, "{} m", (at - center).length());
+    assert!(
+        ((at - center).length() - reach).abs() < 2e-5,
+        "the particle is {} m from the ball's centre, expected {reach} m",
+        (at - center).length()
+    );
     let pull = (pin - at).normalize() * (stiffness * ((pin - at).length() - rest_length));
     let force = pull + Vec3::NEG_Y * (9.81 * mass);
     assert!(force.dot(normal) < -0.2, "the force along the normal is {} N", force.dot(normal));
     let along = force - normal * force.dot(normal);
     assert!(along.length() < 5e-3, "friction must be 0; the force along the surface is {} N", along.length());
     let below = world.particles(free).positions()[1];
-    assert!((below - center).length() < reach - 0.05, "the ball has not moved away");
+    assert!(
+        (below - center).length() < reach - 0.05,
+        "the particle without a backstop must pass through the ball; it is at {below}"
+    );
 }
 
 /// A particle passes through the backstop of another particle, and so does another body.
@@ -139,9 +146,16 @@ fn backstop_impulses_are_equal_and_opposite() {
         assert!(v.linear.z < -0.05, "the particle must pull the body along; speed {}", v.linear.z);
         if aside == 0.0 {
             let together = -speed * mass / (whole + mass);
-            assert!((v.linear.z - together).abs() < 1e-4 * speed, "{} for {together}", v.linear.z);
+            assert!(
+                (v.linear.z - together).abs() < 1e-4 * speed,
+                "body speed {} m/s, expected {together} m/s",
+                v.linear.z
+            );
             let own = world.particles(group).velocities()[0].z;
-            assert!((own - together).abs() < 1e-4 * speed, "{own} for {together}");
+            assert!(
+                (own - together).abs() < 1e-4 * speed,
+                "particle speed {own} m/s, expected {together} m/s"
+            );
         } else {
             assert!(v.angular.x.abs() > 0.1, "the body must rotate; spin {}", v.angular.x);
         }
@@ -230,7 +244,7 @@ fn threads_and_snapshots_have_the_same_bits() {
             let mut w = Writer::new();
             one.save(&mut w);
             let mut again = World::new(WorldDef::default());
-            again.load(&mut Reader::new(w.as_bytes())).expect("the world's own snapshot loads");
+            again.load(&mut Reader::new(w.as_bytes())).expect("a world must load its own snapshot");
             let groups = one.group_ids().zip(again.group_ids()).next().expect("there is one");
             assert_eq!(again.particles(groups.1).backstops(), one.particles(groups.0).backstops());
             copy = Some(again);
@@ -267,11 +281,14 @@ fn a_backstop_sleeps_and_wakes_with_its_body() {
     assert!(world.particles(group).is_awake(), "removing the support must wake the particles");
     (0..60).for_each(|_| world.step());
     let gone = world.particles(group).positions()[0];
-    assert!((gone - Vec3::new(0.0, 0.97, 0.0)).length() > 0.05, "{gone}");
+    assert!(
+        (gone - Vec3::new(0.0, 0.97, 0.0)).length() > 0.05,
+        "the particles must move away after the support is gone; moved by {gone}"
+    );
 }
 
 #[test]
-fn definitions_are_checked() {
+fn group_check_refuses_invalid_backstops() {
     let mut world = World::new(WorldDef::default());
     let body = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     let stop = BackstopDef { particle: 1, body, center: Vec3::ZERO, radius: 0.1 };

@@ -1,5 +1,5 @@
-//! Bobs that hang from stones under a plank: the method that solves the island neither adds nor removes energy of slow
-//! swings.
+//! Bobs that hang from stones under a plank: the solver of their island neither adds energy to slow swings nor removes
+//! energy from them.
 
 use crate::build::ball;
 use sinew_math::{Range, Rotation, Vec3, trig};
@@ -14,7 +14,7 @@ struct Row {
     joints: Vec<JointId>,
 }
 
-/// Number of stones of an island that is solved by response, and of a heap.
+/// Numbers of stones: an island that is solved by response, and an island that is solved as a heap.
 const STONES: [usize; 2] = [3, 10];
 const LENGTH: f32 = 0.5;
 
@@ -42,7 +42,7 @@ impl Row {
         Self { world, bobs, joints }
     }
 
-    /// Returns the largest displacement of each bob along x, metres.
+    /// Takes `steps` steps and returns the largest displacement of each bob along x in them, metres.
     fn reach(&mut self, steps: usize) -> Vec<f32> {
         let mut most = vec![0.0; self.bobs.len()];
         for _ in 0..steps {
@@ -77,7 +77,7 @@ fn bobs_beneath_stones_keep_their_swing() {
 }
 
 #[test]
-fn bobs_lowered_onto_stops_stay() {
+fn bobs_released_beyond_a_stop_rest_at_it() {
     let mut row = Row::new(STONES[1], 0.25, |world, stone, bob, anchor| {
         let mut joint = ball(world, stone, bob, anchor);
         let about_z = Rotation::from_axis_angle(Vec3::Y, -std::f32::consts::FRAC_PI_2);
@@ -89,6 +89,9 @@ fn bobs_lowered_onto_stops_stay() {
     row.reach(600);
     let rest = row.reach(60);
     let stop = LENGTH * trig::sin(0.1);
-    assert!(rest.iter().all(|reach| (reach - stop).abs() < 5e-4), "rest angles {rest:?}, stop at {stop}");
+    assert!(
+        rest.iter().all(|reach| (reach - stop).abs() < 5e-4),
+        "displacements at rest {rest:?} m, displacement of the stop {stop} m"
+    );
     assert!(row.gap() < 2e-5, "joints open by {} m", row.gap());
 }

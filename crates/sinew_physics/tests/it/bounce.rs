@@ -1,4 +1,4 @@
-//! Restitution: rebound heights, pairs, and bodies that bounce on others.
+//! Restitution: rebound heights, collisions of balls, and rebounds from bodies that rest on each other.
 
 use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Vec3, max};
@@ -55,7 +55,7 @@ fn rebound_height_is_restitution_squared() {
 }
 
 #[test]
-fn a_resting_body_carries_a_bounce() {
+fn ball_bounces_on_resting_planks_as_high_as_on_the_floor() {
     for (planks, share) in [(1, 0.01), (2, 0.02)] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -66,7 +66,7 @@ fn a_resting_body_carries_a_bounce() {
         let def = sphere_body(RADIUS, Vec3::Y * (top + RADIUS + 2.0));
         let ball = world.add_body(&bouncy(def, 0.8));
         let peak = rebounds(&mut world, ball, top, 1)[0];
-        assert!((peak / 1.28 - 1.0).abs() < share, "on {planks} planks the peak is {peak} m");
+        assert!((peak / 1.28 - 1.0).abs() < share, "on {planks} planks the ball rebounds to {peak} m");
     }
 }
 
@@ -102,11 +102,14 @@ fn two_balls_conserve_momentum_and_energy() {
 }
 
 #[test]
-fn the_last_ball_of_a_cradle_leaves() {
+fn last_ball_of_a_cradle_leaves_at_the_speed_of_the_first() {
     // The gaps exceed the distance that a ball moves in a substep, so that one hit ends before the next begins.
     let speeds = collided(&[1.0; 5], 2.0, 0.01);
     for (speed, expected) in speeds.iter().zip([0.0, 0.0, 0.0, 0.0, 2.0]) {
-        assert!((speed - expected).abs() < 1e-4, "{speeds:?}");
+        assert!(
+            (speed - expected).abs() < 1e-4,
+            "speed {speed} m/s, expected {expected} m/s, of all balls {speeds:?}"
+        );
     }
 }
 

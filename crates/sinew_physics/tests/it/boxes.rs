@@ -20,17 +20,17 @@ fn pair_of_shapes(world: &mut World) -> BodyId {
 }
 
 #[test]
-fn bodies_answer_over_all_their_shapes() {
+fn queries_of_a_body_include_all_its_shapes() {
     let mut world = World::new(WorldDef::default());
     let id = pair_of_shapes(&mut world);
     assert_eq!(world.bounds(id), Aabb::new(Vec3::new(-1.0, 9.0, -1.0), Vec3::new(2.0, 11.0, 1.0)));
     let deepest = |x: f32, y: f32| world.point_penetration(id, Vec3::new(x, 10.0 + y, 0.0));
-    let way = deepest(1.7, 0.2).expect("in the box");
+    let way = deepest(1.7, 0.2).expect("the point is in the box");
     assert!((way.depth - 0.3).abs() < 1e-5, "{way:?}");
-    let way = deepest(-0.6, 0.0).expect("in the ball");
+    let way = deepest(-0.6, 0.0).expect("the point is in the ball");
     assert!((way.depth - 0.4).abs() < 1e-5 && (way.direction - Vec3::NEG_X).length() < 1e-5, "{way:?}");
     assert_eq!(deepest(1.5, 0.6), None);
-    let above = world.nearest_surface(id, Vec3::new(1.5, 12.5, 0.0)).expect("it has shapes");
+    let above = world.nearest_surface(id, Vec3::new(1.5, 12.5, 0.0)).expect("the body has shapes");
     let expected = (1.5f32 * 1.5 + 2.5 * 2.5).sqrt() - 1.0;
     assert!((above.distance - expected).abs() < 1e-5, "{above:?}");
     assert!(world.contains_point(id, Vec3::new(2.0, 10.0, 0.0)));
@@ -65,7 +65,7 @@ fn regions_find_bodies_with_points_inside() {
         let points: Vec<Vec3> =
             (0..400).map(|_| frame.point(region.half_extents * random.in_cube())).collect();
         for id in world.body_ids() {
-            let distance = |p: &Vec3| world.nearest_surface(id, *p).expect("it has a shape").distance;
+            let distance = |p: &Vec3| world.nearest_surface(id, *p).expect("the body has a shape").distance;
             let nearest = points.iter().map(distance).fold(f32::INFINITY, f32::min);
             if found.contains(&id) {
                 // Samples are about a sixth of the region's size apart.

@@ -28,7 +28,7 @@ fn height(world: &World, id: BodyId) -> f32 {
 }
 
 /// Returns a new world that has loaded a snapshot of the given one.
-fn reborn(world: &World) -> World {
+fn reloaded(world: &World) -> World {
     let (mut w, mut shapes) = (Writer::new(), Writer::new());
     world.save(&mut w);
     world.save_shapes(&mut shapes);
@@ -38,9 +38,9 @@ fn reborn(world: &World) -> World {
     other
 }
 
-/// Found by random lives: the leaf of the removed shape was reused as the first leaf of a body without leaves.
+/// Regression, found by random lives: the tree leaf of the removed shape became the first leaf of a body that has none.
 #[test]
-fn a_body_of_a_used_index_loses_its_last_shape() {
+fn body_in_a_reused_slot_can_lose_its_last_shape() {
     let mut world = world();
     floor(&mut world);
     let shape_of = |body| ShapeId { body, shape: 0 };
@@ -58,7 +58,7 @@ fn a_body_of_a_used_index_loses_its_last_shape() {
 }
 
 #[test]
-fn damping_and_gravity_scale_are_those_of_the_definition() {
+fn damping_and_gravity_scale_set_later_equal_those_in_the_definition() {
     let def = BodyDef {
         linear_velocity: Vec3::X * 3.0,
         angular_velocity: Vec3::Y * 2.0,
@@ -97,7 +97,7 @@ fn user_data_is_kept_and_saved() {
     let mut world = world();
     let ball = world.add_body(&sphere_body(0.2, Vec3::ZERO));
     world.set_user_data(ball, u64::MAX - 1);
-    assert_eq!(reborn(&world).user_data(ball), u64::MAX - 1);
+    assert_eq!(reloaded(&world).user_data(ball), u64::MAX - 1);
 }
 
 #[test]
@@ -114,10 +114,10 @@ fn changing_the_centre_of_mass_keeps_point_velocities() {
     let anchor = world.add_body(&BodyDef::fixed(Shape::sphere(0.1)).at(Vec3::Y * 3.0));
     let joint = world.add_ball(anchor, block, Vec3::X + Vec3::Y * 0.3);
     let (pose, point) = (world.transform(block), Vec3::new(0.7, 0.2, 0.1));
-    let before = world.get(block).expect("it is there").velocity_at(point);
+    let before = world.get(block).expect("the body is in the world").velocity_at(point);
     let properties = MassProperties { center: Vec3::new(0.1, -0.2, 0.3), ..world.mass(block) };
     world.set_mass(block, properties);
-    let after = world.get(block).expect("it is there").velocity_at(point);
+    let after = world.get(block).expect("the body is in the world").velocity_at(point);
     assert!((before - after).length() < 1e-5, "{before} {after}");
     let moved = (pose.inverse() * world.transform(block)).translation.length();
     assert!(moved < 1e-6, "the body must not move; it moved {moved} m");
@@ -155,16 +155,16 @@ fn mass_set_later_equals_mass_in_the_definition() {
 }
 
 #[test]
-fn a_crate_whose_load_shifts_tips_over_its_ledge() {
+fn crate_tips_over_its_ledge_when_its_centre_of_mass_moves() {
     let mut world = world();
     world.add_body(&BodyDef::fixed(Shape::cuboid(Vec3::new(1.0, 0.5, 1.0))).at(Vec3::Y * 0.5));
     let load = world.add_body(&box_body(Vec3::splat(0.5), Vec3::new(0.8, 1.5, 0.0)));
     settled(&mut world, load);
     world.set_mass(load, MassProperties { center: Vec3::X * 0.4, ..world.mass(load) });
     run(&mut world, 120);
-    assert!(height(&world, load) < 1.0, "it fell, to {} m", height(&world, load));
-    // The result equals that of a loaded world.
-    assert_eq!(reborn(&world).hash(), world.hash());
+    assert!(height(&world, load) < 1.0, "the load must fall; its height is {} m", height(&world, load));
+    // A world that has loaded the snapshot has the same state.
+    assert_eq!(reloaded(&world).hash(), world.hash());
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn body_changes_between_all_kinds() {
         world.set_kind(plate, to);
         assert_eq!(world.kind(plate), to);
         let start = height(&world, plate);
-        let mut other = reborn(&world);
+        let mut other = reloaded(&world);
         run(&mut world, 30);
         run(&mut other, 30);
         assert_eq!(world.hash(), other.hash(), "{from:?} to {to:?}");
@@ -221,7 +221,7 @@ fn a_body_made_dynamic_again_keeps_its_mass() {
     let before = world.mass(body);
     world.set_kind(body, BodyKind::Static);
     assert_eq!(world.mass(body).mass, 0.0);
-    let mut world = reborn(&world);
+    let mut world = reloaded(&world);
     run(&mut world, 10);
     world.set_kind(body, BodyKind::Kinematic);
     world.set_kind(body, BodyKind::Dynamic);
@@ -241,10 +241,13 @@ fn a_joint_holds_a_body_that_becomes_static_and_back() {
     world.set_kind(a, BodyKind::Static);
     run(&mut world, 30);
     assert_eq!(world.transform(a).translation, Vec3::ZERO);
-    assert!(world.joint_gap(joint) < 1e-4 && height(&world, b) < -0.8, "it swings");
+    assert!(world.joint_gap(joint) < 1e-4 && height(&world, b) < -0.8, "the joint must let the body swing");
     world.set_kind(a, BodyKind::Dynamic);
     run(&mut world, 60);
-    assert!(world.joint_gap(joint) < 1e-3 && height(&world, a) < -2.0, "both fall");
+    assert!(
+        world.joint_gap(joint) < 1e-3 && height(&world, a) < -2.0,
+        "the joint must hold while both bodies fall"
+    );
 }
 
 fn pairs(list: &[(ShapeId, ShapeId)]) -> Vec<(u32, u32)> {
@@ -272,7 +275,7 @@ fn added_and_removed_shapes_report_touch_events() {
     // The first shape is removed, and the numbers of the others decrease.
     world.remove_shape(ShapeId { body: shelf, shape: 0 }, MassUpdate::FromShapes);
     assert!(world.is_awake(balls[0]));
-    let mut other = reborn(&world);
+    let mut other = reloaded(&world);
     world.step();
     other.step();
     let events = world.events();
@@ -284,7 +287,11 @@ fn added_and_removed_shapes_report_touch_events() {
     assert_eq!(world.hash(), other.hash());
     assert!(height(&world, balls[0]) < -3.0, "the ball without support must fall");
     for ball in [balls[1], balls[2]] {
-        assert!((height(&world, ball) - 0.2).abs() < 0.01, "it did not: {}", height(&world, ball));
+        assert!(
+            (height(&world, ball) - 0.2).abs() < 0.01,
+            "the ball must rest on the new body; height {} m",
+            height(&world, ball)
+        );
     }
     // A thicker shape lifts the body on it, without an event.
     let first = ShapeId { body: shelf, shape: 0 };
@@ -327,7 +334,7 @@ fn masses_follow_shapes_unless_kept() {
 
 #[test]
 #[should_panic(expected = "positive, finite mass")]
-fn a_dynamic_body_keeps_a_shape_with_mass() {
+fn removing_the_only_shape_with_mass_panics() {
     let mut world = world();
     let ball = world.add_body(&sphere_body(0.5, Vec3::ZERO));
     world.remove_shape(ShapeId { body: ball, shape: 0 }, MassUpdate::FromShapes);
@@ -335,7 +342,7 @@ fn a_dynamic_body_keeps_a_shape_with_mass() {
 
 #[test]
 #[should_panic(expected = "BodyId 0v0 has no shape 3")]
-fn a_missing_shape_is_named() {
+fn missing_shape_is_named_in_the_panic() {
     let mut world = world();
     let ball = world.add_body(&sphere_body(0.5, Vec3::ZERO));
     world.set_sensing(ShapeId { body: ball, shape: 3 }, Sensing::Sensor);
@@ -343,7 +350,7 @@ fn a_missing_shape_is_named() {
 
 #[test]
 #[should_panic(expected = "half-spaces are static bodies")]
-fn a_half_space_does_not_move() {
+fn moving_half_space_is_refused() {
     let mut world = world();
     let ground = floor(&mut world);
     world.set_kind(ground, BodyKind::Kinematic);
@@ -387,7 +394,7 @@ fn change(world: &mut World, random: &mut Random) {
     }
 }
 
-/// Derived data must follow the changes: the second world is loaded again before each step, so it has no older data.
+/// Changes must update all derived data: the other world is loaded anew before each step, so it has no outdated data.
 #[test]
 fn a_changed_world_equals_a_reloaded_one() {
     let mut random = Random::new(7);
@@ -407,7 +414,7 @@ fn a_changed_world_equals_a_reloaded_one() {
             if random.unit() < 0.4 {
                 change(&mut world, &mut random);
             }
-            let mut other = reborn(&world);
+            let mut other = reloaded(&world);
             world.step();
             other.step();
             assert_eq!(world.hash(), other.hash(), "step {step}");
@@ -443,12 +450,15 @@ fn a_kinematic_body_reaches_its_target() {
         world.move_to(paddle, target, dt);
         world.step();
         let off = target.inverse() * world.transform(paddle);
-        assert!(off.translation.length() < 1e-5, "{off:?}");
-        assert!(off.rotation.angle_to(Rotation::IDENTITY) < 2e-3, "{off:?}");
+        assert!(off.translation.length() < 1e-5, "pose of the paddle relative to its target: {off:?}");
+        assert!(
+            off.rotation.angle_to(Rotation::IDENTITY) < 2e-3,
+            "pose of the paddle relative to its target: {off:?}"
+        );
     }
 }
 
-/// Near and far moves, small and large rotations, of bodies of every kind, at rest and moving.
+/// Moves are near and far, with small and large rotations, of bodies of every kind, at rest and moving.
 #[test]
 fn batched_moves_equal_single_moves() {
     let mut random = Random::new(9);
@@ -476,7 +486,7 @@ fn batched_moves_equal_single_moves() {
         };
         let before: Vec<Transform> = ids.iter().map(|&id| near(world.transform(id))).collect();
         let now: Vec<Transform> = before.iter().map(|&before| near(before)).collect();
-        let mut other = reborn(&world);
+        let mut other = reloaded(&world);
         for (&id, (&before, &now)) in ids.iter().zip(before.iter().zip(&now)) {
             let turn = now.rotation * before.rotation.inverse();
             let to = now.translation + (now.translation - before.translation);
@@ -490,11 +500,11 @@ fn batched_moves_equal_single_moves() {
     }
 }
 
-/// Function that returns a joint between two bodies about an axis.
+/// Function that returns a joint between two bodies; kinds without an axis ignore the axis.
 type Make = fn(&World, BodyId, BodyId, Vec3) -> JointDef;
 
 #[test]
-fn short_joints_keep_their_length() {
+fn joints_built_by_short_methods_lock_the_axes_of_their_kind() {
     let axis = Vec3::new(1.0, 2.0, -2.0);
     let make: [Make; 5] = [
         |world, a, b, _| world.ball(a, b, Vec3::new(0.5, 0.1, 0.0)),
@@ -514,7 +524,7 @@ fn short_joints_keep_their_length() {
         let joint = world.add_joint(&make(&world, a, b, axis));
         assert!(world.joint_gap(joint) < 1e-6, "a joint of kind {kind} must start without a gap");
         run(&mut world, 40);
-        assert!(world.joint_gap(joint) < 1e-4, "kind {kind} holds");
+        assert!(world.joint_gap(joint) < 1e-4, "a joint of kind {kind} must keep its gap closed");
         let (now, unit) = (world.transform(b), axis / 3.0);
         let turned = now.rotation * start.rotation.inverse();
         match kind {
@@ -525,7 +535,10 @@ fn short_joints_keep_their_length() {
             }
             3 => assert!(world.joint_transform(joint).rotation.twist_angle(Vec3::X).abs() < 1e-3),
             4 => assert!(turned.angle_to(Rotation::IDENTITY) < 2e-3 && now.translation.x > 0.99),
-            _ => assert!((now.translation - start.translation).length() > 0.1, "it swings"),
+            _ => assert!(
+                (now.translation - start.translation).length() > 0.1,
+                "the joint must let the body swing"
+            ),
         }
     }
 }
@@ -540,7 +553,10 @@ fn a_rope_joint_keeps_its_length() {
         world.step();
         sinew_math::max(most, (world.transform(load).translation - Vec3::Y * 3.0).length())
     });
-    assert!(farthest > 1.49 && farthest < 1.501, "{farthest} m");
+    assert!(
+        farthest > 1.49 && farthest < 1.501,
+        "the largest distance is {farthest} m, expected the rope's length of 1.5 m"
+    );
 }
 
 #[test]
@@ -657,19 +673,19 @@ fn bodies_moved_are_those_whose_pose_changed() {
         assert_eq!(moved.len(), world.bodies_moved().count(), "each moved body must be listed once");
         let changed = before.iter().filter(|(id, pose)| world.transform(*id) != *pose);
         let missed: Vec<_> = changed.filter(|(id, _)| !moved.contains(id)).collect();
-        assert!(missed.is_empty(), "{missed:?}");
+        assert!(missed.is_empty(), "bodies whose pose changed are not listed: {missed:?}");
         assert!(moved.contains(&lift) && !moved.contains(&still));
         (most, least) = (most.max(moved.len()), least.min(moved.len()));
     }
     assert_eq!((most, least), (21, 1), "all bodies must move at first, at last only the lift");
-    assert_eq!(reborn(&world).bodies_moved().count(), 0);
+    assert_eq!(reloaded(&world).bodies_moved().count(), 0);
 }
 
 #[test]
 fn body_handle_is_valid_until_the_body_is_removed() {
     let mut world = world();
     let ball = world.add_body(&BodyDef { user_data: 5, ..sphere_body(0.5, Vec3::Y) });
-    let found = world.get(ball).expect("it is there");
+    let found = world.get(ball).expect("the body is in the world");
     assert_eq!((found.id(), found.kind(), found.user_data()), (ball, BodyKind::Dynamic, 5));
     assert_eq!((found.transform(), found.bounds().max.y), (world.transform(ball), 1.5));
     assert!(format!("{found:?}").starts_with("BodyRef { id: BodyId 0v0, kind: Dynamic"), "{found:?}");
@@ -681,7 +697,7 @@ fn body_handle_is_valid_until_the_body_is_removed() {
 }
 
 #[test]
-fn a_static_body_has_no_velocity() {
+fn setting_the_velocity_of_a_static_body_has_no_effect() {
     let mut world = world();
     let def = BodyDef { kind: BodyKind::Static, linear_velocity: Vec3::X, ..sphere_body(0.5, Vec3::ZERO) };
     let ground = world.add_body(&def);
@@ -693,6 +709,6 @@ fn a_static_body_has_no_velocity() {
     let slide = world.transform(ball).translation;
     assert!(
         slide.x.abs() < 1e-4 && slide.z.abs() < 1e-4,
-        "the floor must not carry the body; it moved {slide}"
+        "the static floor must not carry the body along; it moved {slide}"
     );
 }

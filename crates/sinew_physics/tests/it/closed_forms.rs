@@ -1,4 +1,4 @@
-//! Closed forms that the step must reproduce.
+//! Free motion, pendulums, friction, stacks and restored worlds, compared with closed forms.
 
 use crate::build::{ball, box_body, floor, half_space_tilted, sphere_body};
 use sinew_math::{Random, Rotation, Vec3};
@@ -20,11 +20,11 @@ fn free_fall_is_exact_to_the_integrator() {
     let (t, h) = (60.0 * dt, dt / 4.0);
     let expected = 100.0 - 9.81 * t * t / 2.0 - 9.81 * h * t / 2.0;
     let y = f64::from(world.transform(id).translation.y);
-    assert!((y - expected).abs() < 1e-4, "{y} for {expected}");
+    assert!((y - expected).abs() < 1e-4, "height {y} m, expected {expected} m");
 }
 
 #[test]
-fn a_projectile_lands_where_it_should() {
+fn projectile_lands_at_the_position_of_the_closed_form() {
     let mut world = World::new(WorldDef::default());
     let mut def = sphere_body(0.05, Vec3::ZERO);
     def.linear_velocity = Vec3::new(10.0, 12.0, -3.0);
@@ -37,7 +37,7 @@ fn a_projectile_lands_where_it_should() {
 }
 
 #[test]
-fn pendulum_periods() {
+fn pendulum_periods_match_the_closed_form() {
     for (amplitude, period) in [(30.0f32, 2.040_99), (90.0, 2.367_84), (150.0, 3.535_10)] {
         let mut world = World::new(WorldDef::default());
         let anchor = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
@@ -109,7 +109,7 @@ fn coulomb_friction_holds_below_its_angle_and_slides_above() {
 }
 
 #[test]
-fn momentum_in_a_weightless_pile() {
+fn weightless_pile_keeps_its_momentum() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let mut random = Random::new(11);
     let mut scale = 0.0;
@@ -136,8 +136,8 @@ fn a_box_comes_to_rest_on_the_floor_and_sleeps() {
     def.rotation = Rotation::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), 0.4);
     let id = world.add_body(&def);
     run(&mut world, 360);
-    assert!(!world.is_awake(id), "velocity {:?}", world.velocity(id));
-    assert!(world.penetration(id) < 0.006, "sinks {}", world.penetration(id));
+    assert!(!world.is_awake(id), "the box must sleep; velocity {:?}", world.velocity(id));
+    assert!(world.penetration(id) < 0.006, "the box penetrates the floor by {} m", world.penetration(id));
 }
 
 #[test]
@@ -178,7 +178,7 @@ fn a_restored_world_steps_like_the_original() {
     world.save(&mut w);
     let bytes = w.into_bytes();
     let mut copy = World::new(WorldDef::default());
-    copy.load(&mut sinew_math::Reader::new(&bytes)).expect("own snapshot");
+    copy.load(&mut sinew_math::Reader::new(&bytes)).expect("the snapshot must load");
     assert_eq!(copy.hash(), world.hash());
     for step in 0..300 {
         world.step();

@@ -1,4 +1,4 @@
-//! Cloth on resting solids: Coulomb's law on a slope, for every kind of slope and any number of near obstacles.
+//! Cloth on resting solids: Coulomb's law holds on a slope of every kind, with few and with many obstacles.
 
 use sinew_math::{Rotation, Transform, Vec3, trig};
 use sinew_physics::particles::{ClothDef, GroupDef, Obstacle, ObstacleBody, ParticleGroup, SpringDef};
@@ -49,14 +49,14 @@ fn cloth(slope: Rotation) -> GroupDef {
     group
 }
 
-/// Returns an obstacle and `beside` distant boxes. With more than 16 obstacles near, particles are solved one by one.
+/// Returns an obstacle and `beside` boxes away from it. With more than 16 obstacles, particles are solved one by one.
 fn crowded(solid: Obstacle, beside: usize) -> Vec<Obstacle> {
     let far = |k| Transform::from_translation(Vec3::new(1e3, 0.0, 10.0 * k as f32));
     let boxes = (0..beside).map(|k| obstacle(Shape::Box { half_extents: Vec3::ONE }, far(k)));
     core::iter::once(solid).chain(boxes).collect()
 }
 
-/// Returns the mean displacement of the particles down the slope in `substeps`, metres, with `beside` distant boxes.
+/// Returns the mean displacement of the particles down the slope in `substeps`, metres, with `beside` more boxes.
 fn way_down(angle: f32, solid: usize, beside: usize, substeps: usize) -> f32 {
     let slope = Rotation::from_axis_angle(Vec3::Z, angle);
     let obstacles = crowded(slopes(slope)[solid].clone(), beside);
@@ -102,8 +102,8 @@ fn cloth_stays_on_a_slope_that_friction_holds() {
     }
 }
 
-/// Returns the mean stretch of the springs and the height of the particles, metres, of a cloth over a ball, with
-/// `beside` distant boxes. The folds depend on the start: some particles start higher by micrometres.
+/// Returns `[stretch, height]` of a cloth over a ball, metres: the means over the springs and over the particles.
+/// `beside` is the number of distant boxes. `start` raises some particles by micrometres, which changes the folds.
 fn over_a_ball(beside: usize, start: usize) -> [f32; 2] {
     let obstacles = crowded(obstacle(Shape::Sphere { radius: 0.3 }, Transform::IDENTITY), beside);
     let def = ClothDef {
@@ -141,10 +141,10 @@ fn over_a_ball(beside: usize, start: usize) -> [f32; 2] {
     [stretches.sum::<f32>() / group.springs().len() as f32, heights]
 }
 
-/// In SIMD lanes the plane stops particles after their springs; one by one it stops them within each spring. Folds
-/// alone change the stretch by up to 4 %, so the test compares means of eight starts.
+/// In SIMD lanes, contacts stop particles after all springs; one by one, they stop them within each spring. Different
+/// folds change the stretch by up to 4 %, so the test compares means over eight starts.
 #[test]
-fn cloth_over_a_ball_is_alike_in_lanes_and_solved_individually() {
+fn cloth_over_a_ball_has_the_same_mean_pose_in_lanes_and_one_by_one() {
     let [lanes, others] = [0, 16].map(|beside| {
         let all: [[f32; 2]; 8] = core::array::from_fn(|start| over_a_ball(beside, start));
         [0, 1].map(|k| all.iter().map(|figures| figures[k]).sum::<f32>() / all.len() as f32)

@@ -7,12 +7,12 @@ use sinew_physics::*;
 use std::collections::BTreeSet;
 
 const STEPS: usize = 120;
-/// Gap of surfaces, metres, below which a pair is not judged: rounding decides if it overlaps, and sleeping bodies keep
-/// their last result.
+/// Magnitude of a gap, metres, below which the oracle does not judge a pair, because rounding decides whether it
+/// overlaps. The second value applies if a body sleeps: sleeping bodies keep their last result.
 const UNSURE: f64 = 3e-5;
 const UNSURE_ASLEEP: f64 = 0.02;
 
-/// A shape of the oracle: a box, or a ball if it has a radius. World axes.
+/// A shape of the oracle, in world coordinates: a box, or a ball if `radius` is not 0.
 struct Solid {
     center: [f64; 3],
     axes: [[f64; 3]; 3],
@@ -100,8 +100,8 @@ fn follow<T: Ord + Copy + core::fmt::Debug, K: Ord>(
     end: &[T],
     order: impl Fn(&T) -> K,
 ) {
-    assert!(begin.is_sorted_by(|p, q| order(p) < order(q)), "{begin:?}");
-    assert!(end.is_sorted_by(|p, q| order(p) < order(q)), "{end:?}");
+    assert!(begin.is_sorted_by(|p, q| order(p) < order(q)), "begin events are not sorted: {begin:?}");
+    assert!(end.is_sorted_by(|p, q| order(p) < order(q)), "end events are not sorted: {end:?}");
     for pair in end {
         assert!(told.remove(pair), "{pair:?} ends without a begin event");
     }
@@ -190,7 +190,7 @@ fn disturb(world: &mut World, r: &mut Random, parted: &mut BTreeSet<(BodyId, Bod
         3 => world.set_contact_rule(shape, [ContactRule::Push, ContactRule::Ghost][r.index(2)]),
         4 if id != other => {
             world.disable_pair(id, other);
-            // Ids from bits, so that the other worlds accept them too.
+            // Ids are made from bits, so that the other worlds accept them too.
             let [a, b] = [id, other].map(|id| BodyId::from_bits(id.to_bits()));
             parted.insert((BodyId::min(a, b), BodyId::max(a, b)));
         }
@@ -215,27 +215,27 @@ fn disturb(world: &mut World, r: &mut Random, parted: &mut BTreeSet<(BodyId, Bod
 }
 
 /// Returns the pairs of shapes that pushed each other in the last step.
-fn pushed(world: &World) -> BTreeSet<(ShapeId, ShapeId)> {
+fn pushing_pairs(world: &World) -> BTreeSet<(ShapeId, ShapeId)> {
     let pushing = world.contacts().filter(|contact| contact.impulse() > 0.0);
     pushing.map(|contact| (contact.a, contact.b)).collect()
 }
 
-/// Gap up to which a touching pair still touches, metres: 0.2 % of the smallest extent, at most 0.5 mm.
-fn linger(p: &Solid, q: &Solid) -> f64 {
+/// Returns the gap up to which a touching pair still touches, metres: 0.2 % of the smallest extent, at most 0.5 mm.
+fn release_gap(p: &Solid, q: &Solid) -> f64 {
     let extent = |s: &Solid| 2.0 * (s.radius + s.half.into_iter().fold(f64::INFINITY, f64::min));
     (0.002 * extent(p).min(extent(q))).min(5e-4)
 }
 
-/// Judges each pair of shapes once: it surely touches, surely does not touch, or is not judged. `touched` has the pairs
-/// that touched before.
-fn look(
+/// Calls `found` with each pair of shapes that surely touches or surely does not, whether it touches, and whether it is
+/// a sensor pair. Skips uncertain pairs. `parted`: disabled pairs; `touched`: pairs that touched before the step.
+fn judge_pairs(
     world: &World,
     parted: &BTreeSet<(BodyId, BodyId)>,
     touched: &BTreeSet<(ShapeId, ShapeId)>,
     mut found: impl FnMut((ShapeId, ShapeId), bool, bool),
 ) {
     let ids: Vec<BodyId> = world.body_ids().collect();
-    let pushed = pushed(world);
+    let pushed = pushing_pairs(world);
     let solids: Vec<Vec<Solid>> = ids
         .iter()
         .map(|&id| world.shapes(id).map(|(shape, frame)| Solid::new(&shape, &frame)).collect())
@@ -257,7 +257,8 @@ fn look(
                 };
                 let meets = kinds_meet && world.filter(s).meets(world.filter(t)) && !parted.contains(&(a, b));
                 let senses = senses != [false, false];
-                let gap = p.gap(q) - if touched.contains(&(s, t)) && !senses { linger(p, q) } else { 0.0 };
+                let gap =
+                    p.gap(q) - if touched.contains(&(s, t)) && !senses { release_gap(p, q) } else { 0.0 };
                 let pushed = !senses && pushed.contains(&(s, t));
                 if gap.abs() > unsure || pushed || !meets {
                     found((s, t), meets && (gap < 0.0 || pushed), senses);
@@ -267,7 +268,7 @@ fn look(
     }
 }
 
-/// A world and the way in which it runs; the events of all ways must be equal.
+/// A world that runs on some number of threads, or is reloaded while it runs; all of them must report equal events.
 struct Way {
     world: World,
     threads: usize,
@@ -280,13 +281,13 @@ impl Way {
             let mut w = Writer::new();
             self.world.save(&mut w);
             self.world = World::new(WorldDef::default());
-            self.world.load(&mut Reader::new(w.as_bytes())).expect("it is a snapshot");
+            self.world.load(&mut Reader::new(w.as_bytes())).expect("the snapshot must load");
         }
         self.world.step_with(&Threads::new(self.threads), &NoProfiler);
     }
 }
 
-/// Runs the world of a seed in all ways; returns the number of judged pairs.
+/// Compares the events of a seed's world with the oracle, in all ways to run it; returns the number of judged pairs.
 fn check(seed: u64) -> usize {
     let ways = [(1, false), (2, false), (4, false), (1, true)];
     let mut ways = ways.map(|(threads, restores)| {
@@ -302,7 +303,7 @@ fn check(seed: u64) -> usize {
             disturb(&mut way.world, &mut Random::new(seed << 20 | step as u64), &mut parted);
         }
         let mut expected = Vec::new();
-        look(&ways[0].world, &parted, &touching.shapes, |pair, touches, senses| {
+        judge_pairs(&ways[0].world, &parted, &touching.shapes, |pair, touches, senses| {
             expected.push((pair, touches, senses));
         });
         ways.iter_mut().for_each(|way| way.step(step));
@@ -368,7 +369,7 @@ fn extreme_hits_are_reported_finite() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let corners = [(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)];
     let points = corners.map(|(x, z)| Vec3::new(x, 0.0, z));
-    let ground = Shape::mesh(&points, &[[0, 2, 1], [0, 3, 2]]).expect("a mesh");
+    let ground = Shape::mesh(&points, &[[0, 2, 1], [0, 3, 2]]).expect("the mesh is valid");
     world.add_body(&BodyDef::fixed(ground));
     let mut last = None;
     for i in 0..7 {
@@ -386,7 +387,7 @@ fn extreme_hits_are_reported_finite() {
             let numbers = [hit.approach, hit.impulse, hit.greatest];
             let finite =
                 numbers.iter().all(|x| x.is_finite()) && hit.point.is_finite() && hit.normal.is_finite();
-            assert!(finite, "step {step}: {hit:?}");
+            assert!(finite, "step {step}: a hit has a number that is not finite: {hit:?}");
         }
     }
 }

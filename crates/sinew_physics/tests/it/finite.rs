@@ -51,8 +51,8 @@ fn refuses(what: &str, bad: &[f32], act: impl Fn(&mut Fixture, f32)) {
         let mut fixture = Fixture::new();
         let before = fixture.world.hash();
         let result = std::panic::catch_unwind(AssertUnwindSafe(|| act(&mut fixture, x)));
-        assert!(result.is_err(), "{what} takes {x}");
-        assert_eq!(fixture.world.hash(), before, "{what} of {x} changed the world");
+        assert!(result.is_err(), "setting {what} to {x} must panic");
+        assert_eq!(fixture.world.hash(), before, "setting {what} to {x} must not change the world");
     }
 }
 
@@ -76,12 +76,15 @@ fn refuses_pose(what: &str, act: impl Fn(&mut Fixture, Transform)) {
 }
 
 #[test]
-fn worlds() {
+fn world_definitions_refuse_nonfinite_numbers() {
     let world = |change: &dyn Fn(&mut WorldDef, f32)| {
         for x in BAD {
             let mut def = WorldDef::default();
             change(&mut def, x);
-            assert!(std::panic::catch_unwind(|| World::new(def)).is_err(), "{x}");
+            assert!(
+                std::panic::catch_unwind(|| World::new(def)).is_err(),
+                "a world must refuse the number {x}"
+            );
         }
     };
     world(&|def, x| def.gravity.y = x);
@@ -90,7 +93,7 @@ fn worlds() {
 }
 
 #[test]
-fn bodies() {
+fn body_setters_refuse_nonfinite_numbers() {
     let add = |f: &mut Fixture, change: &dyn Fn(&mut BodyDef)| {
         let mut def = box_body(Vec3::splat(0.2), Vec3::Y);
         change(&mut def);
@@ -139,7 +142,7 @@ fn bodies() {
 }
 
 #[test]
-fn forces() {
+fn forces_and_impulses_refuse_nonfinite_numbers() {
     refuses_in("apply_impulse", |f, v| f.world.apply_impulse(f.body, v, Vec3::ZERO));
     refuses_in("apply_impulse at", |f, v| f.world.apply_impulse(f.body, Vec3::X, v));
     refuses_in("apply_impulse_at_center", |f, v| f.world.apply_impulse_at_center(f.body, v));
@@ -150,7 +153,7 @@ fn forces() {
     refuses_in("apply_torque", |f, v| f.world.apply_torque(f.body, v));
     let lasting = |f: &mut Fixture, def: ForceDef| {
         let added = std::panic::catch_unwind(AssertUnwindSafe(|| f.world.add_force(f.body, &def)));
-        assert!(added.is_err(), "add_force accepts {def:?}");
+        assert!(added.is_err(), "add_force must refuse {def:?}");
         f.world.set_force(f.force, &def);
     };
     refuses_in("force", |f, force| lasting(f, ForceDef { force, ..ForceDef::default() }));
@@ -175,11 +178,11 @@ fn forces() {
 }
 
 #[test]
-fn fields() {
+fn field_setters_refuse_nonfinite_numbers() {
     let set = |f: &mut Fixture, kind: FieldKind| {
         let def = FieldDef::new(kind);
         let added = std::panic::catch_unwind(AssertUnwindSafe(|| f.world.add_field(&def)));
-        assert!(added.is_err(), "add_field accepts {def:?}");
+        assert!(added.is_err(), "add_field must refuse {def:?}");
         f.world.set_field(f.field, &def);
     };
     refuses_in("uniform", |f, acceleration| set(f, FieldKind::Uniform(UniformGravity { acceleration })));
@@ -230,13 +233,13 @@ fn fields() {
 }
 
 #[test]
-fn joints() {
+fn joint_setters_refuse_nonfinite_numbers() {
     // Both adding and setting refuse the number. Caps and ends of ranges may be infinite.
     let set = |f: &mut Fixture, change: &dyn Fn(&mut JointDef)| {
         let mut def = f.world.joint(f.joint);
         change(&mut def);
         let added = std::panic::catch_unwind(AssertUnwindSafe(|| f.world.add_joint(&def)));
-        assert!(added.is_err(), "add_joint accepts {def:?}");
+        assert!(added.is_err(), "add_joint must refuse {def:?}");
         f.world.set_joint(f.joint, &def);
     };
     let nan = [f32::NAN];
@@ -294,7 +297,7 @@ fn joints() {
 }
 
 #[test]
-fn particle_groups() {
+fn particle_setters_refuse_nonfinite_numbers() {
     let add = |f: &mut Fixture, change: &dyn Fn(&mut GroupDef)| {
         let mut def = particles();
         change(&mut def);

@@ -1,10 +1,10 @@
-//! Bodies in flight, eight at a time: they move like single bodies, and like islands.
+//! Bodies in flight are integrated eight at a time. They move like single bodies, and like bodies solved as islands.
 
 use crate::build::box_body;
 use sinew_math::{Random, Transform, Vec3};
 use sinew_physics::*;
 
-/// Adds a spinning box, number `i` of a crowd in which no two boxes meet.
+/// Adds a spinning box with index `i`. Boxes of different indices never meet.
 fn spinning(world: &mut World, i: u32) -> BodyId {
     let mut random = Random::new(u64::from(i) + 1);
     let extents = Vec3::new(random.range(0.1, 0.2), random.range(0.2, 0.4), random.range(0.4, 0.8));
@@ -53,8 +53,8 @@ fn flight_matches_islands() {
             pose.rotation.dot(expected.rotation).abs() > 1.0 - 1e-6,
             "body {i}: pose {pose:?}, expected {expected:?}"
         );
-        assert!((v.linear - w.linear).length() < 1e-4, "{i}: {v:?}, {w:?}");
-        assert!((v.angular - w.angular).length() < 2e-3, "{i}: {v:?}, {w:?}");
+        assert!((v.linear - w.linear).length() < 1e-4, "body {i}: velocity {v:?}, expected {w:?}");
+        assert!((v.angular - w.angular).length() < 2e-3, "body {i}: velocity {v:?}, expected {w:?}");
     }
 }
 
@@ -68,8 +68,11 @@ fn spin_and_speed_stay_within_the_worlds_limits() {
     for _ in 0..10 {
         world.step();
         let v = world.velocity(id);
-        assert!((v.linear.length() - 20.0).abs() < 1e-3, "{v:?}");
+        assert!((v.linear.length() - 20.0).abs() < 1e-3, "the velocity exceeds the world's limits: {v:?}");
         // At most 0.1 rad in each of 240 substeps per second; the spin of a tumbling body changes with its moments.
-        assert!(v.angular.is_finite() && v.angular.length() < 3.0 * 24.0, "{v:?}");
+        assert!(
+            v.angular.is_finite() && v.angular.length() < 3.0 * 24.0,
+            "the velocity exceeds the world's limits: {v:?}"
+        );
     }
 }

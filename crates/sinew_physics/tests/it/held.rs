@@ -21,8 +21,8 @@ struct Laden {
     ropes: Vec<GroupId>,
 }
 
-/// Returns a plank with a rope at each corner, all in one group or each in its own, and a box of `mass` at `height`
-/// above the plank.
+/// Returns a plank that hangs on a rope at each corner, and a box of `mass` at `height` above it. `apart`: each rope is
+/// a group of its own.
 fn laden(mass: f32, height: f32, apart: bool) -> Laden {
     let mut world = World::new(WorldDef::default());
     let mut def = BodyDef { sleeping: Sleeping::Off, ..box_body(PLANK, Vec3::ZERO) };
@@ -81,8 +81,8 @@ impl Laden {
         of_world.map(|(_, impulse)| -impulse.y * per_second).sum()
     }
 
-    /// Runs until the bodies rest; returns the largest energy gain, J, and the vertical motion in the last second,
-    /// metres.
+    /// Takes `steps` steps. Returns the largest rise of the energy above its initial value, J, and the range of the
+    /// plank's heights in the last second, metres.
     fn run(&mut self, steps: usize) -> (f32, f32) {
         let begin = self.world.energy().total();
         let (mut gain, mut low, mut high) = (0.0_f32, f32::INFINITY, f32::NEG_INFINITY);
@@ -98,19 +98,19 @@ impl Laden {
     }
 }
 
-/// Ropes carry a body and all bodies on it: stretch and tension are those of the whole weight.
+/// The ropes' stretch and tension correspond to the weight of the plank and of the box on it.
 #[test]
 fn ropes_carry_the_load_on_a_plank() {
-    are_weighed_on(false);
+    check_load_on_ropes(false);
 }
 
 /// Ropes in separate groups carry the load like ropes in one group.
 #[test]
 fn separate_rope_groups_carry_the_load_on_a_plank() {
-    are_weighed_on(true);
+    check_load_on_ropes(true);
 }
 
-fn are_weighed_on(apart: bool) {
+fn check_load_on_ropes(apart: bool) {
     for (mass, height) in [(1.0, 0.0), (10.0, 0.0), (100.0, 0.0), (10.0, 0.2), (100.0, 0.2)] {
         let what = format!("{mass} kg from {height} m, apart: {apart}");
         let mut laden = laden(mass, height, apart);
@@ -134,9 +134,9 @@ fn are_weighed_on(apart: bool) {
     }
 }
 
-/// Snapshots contain the added mass of a body on ropes.
+/// Snapshots contain the mass scaling of a body on ropes.
 #[test]
-fn a_loaded_plank_restores_equally() {
+fn restored_loaded_plank_continues_with_the_same_bits() {
     for apart in [false, true] {
         let mut laden = laden(20.0, 0.1, apart);
         for step in 0..60 {
@@ -144,7 +144,7 @@ fn a_loaded_plank_restores_equally() {
             let mut bytes = Writer::new();
             laden.world.save(&mut bytes);
             let mut copy = World::new(WorldDef::default());
-            copy.load(&mut Reader::new(bytes.as_bytes())).expect("own snapshot");
+            copy.load(&mut Reader::new(bytes.as_bytes())).expect("the snapshot must load");
             let mut other = laden.world.clone();
             for _ in 0..3 {
                 copy.step();

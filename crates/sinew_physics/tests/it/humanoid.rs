@@ -65,7 +65,7 @@ fn hinge(lo: f32, hi: f32) -> JointKind {
 
 /// Adds the humanoid with its feet at the origin of `placed` and its arms stretched out.
 pub fn figure(mut world: World, placed: Transform, velocity: Vec3) -> Figure {
-    world.step(); // settles what is static
+    world.step(); // registers the static bodies
     let mut b = Builder { world, placed, velocity, bodies: Vec::new(), joints: Vec::new() };
     let cuboid = |x, y, z| Shape::Box { half_extents: Vec3::new(x, y, z) };
     let capsule = |radius, half_height| Shape::Capsule { half_height, radius };
@@ -147,7 +147,7 @@ pub fn observe(figure: &mut Figure, seconds: f32) -> Report {
     report
 }
 
-/// Returns a rotated humanoid whose lowest body is about `height` above the floor, metres.
+/// Returns a rotated humanoid whose lowest body is about `height` metres above the floor.
 fn dropped(turn: Rotation, height: f32) -> Figure {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);

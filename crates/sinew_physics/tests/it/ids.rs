@@ -1,4 +1,4 @@
-//! Ids of removed objects and of other worlds panic at the caller with a message.
+//! Using an id of a removed object or of another world panics with a message that names the id and the caller's place.
 
 use crate::build::sphere_body;
 use sinew_math::{Random, Reader, Transform, Vec3, Writer};
@@ -12,7 +12,7 @@ thread_local! {
     static PLACE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Returns the message of the panic of `f`, and the file in it.
+/// Returns the message of the panic of `f`, and the source file in which it occurred.
 fn panic_of<T>(f: impl FnOnce() -> T) -> (String, String) {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -22,8 +22,8 @@ fn panic_of<T>(f: impl FnOnce() -> T) -> (String, String) {
             before(info);
         }));
     });
-    let payload = catch_unwind(AssertUnwindSafe(f)).err().expect("it panics");
-    let text = payload.downcast_ref::<String>().cloned().expect("a text with an id");
+    let payload = catch_unwind(AssertUnwindSafe(f)).err().expect("the call must panic");
+    let text = payload.downcast_ref::<String>().cloned().expect("the panic's payload is a text");
     (text, PLACE.take())
 }
 
@@ -143,14 +143,14 @@ fn ids_from_bits_work_in_any_world() {
 
 /// A world that loads the snapshot of another accepts the other's ids, and the hashes are equal.
 #[test]
-fn a_snapshot_loads_into_any_world() {
+fn world_that_loads_a_snapshot_accepts_the_other_worlds_ids() {
     let (mut one, mut other) = (world(), world());
     let mine = one.add_body(&sphere_body(0.1, Vec3::ZERO));
     let theirs = other.add_body(&sphere_body(0.1, Vec3::ZERO));
     assert_eq!(one.hash(), other.hash());
     let mut bytes = Writer::new();
     other.save(&mut bytes);
-    one.load(&mut Reader::new(bytes.as_bytes())).expect("a snapshot");
+    one.load(&mut Reader::new(bytes.as_bytes())).expect("the snapshot must load");
     one.step();
     other.step();
     assert_eq!(one.hash(), other.hash());

@@ -16,7 +16,7 @@ fn anchor(world: &mut World) -> BodyId {
 }
 
 /// Adds a body without a shape.
-fn lump(world: &mut World, position: Vec3, mass: f32, inertia: f32) -> BodyId {
+fn mass_without_shape(world: &mut World, position: Vec3, mass: f32, inertia: f32) -> BodyId {
     let inertia = Sym3::from_diagonal(Vec3::splat(inertia));
     let mass = Some(MassProperties { mass, center: Vec3::ZERO, inertia });
     world.add_body(&BodyDef { position, mass, ..BodyDef::default() })
@@ -29,16 +29,17 @@ fn facing(at: Vec3) -> Transform {
 
 const HINGE: JointKind = JointKind::Hinge { limit: None };
 
-/// Returns an arm of 2 kg with its centre at x = 0.5 m, hinged about z at the origin. Moment about the hinge: 0.58
-/// kg·m².
+/// Returns a world with an arm of 2 kg whose centre is at x = 0.5 m, and the definition of a hinge about z at the
+/// origin. The arm's moment of inertia about the hinge is [`ARM_MOMENT`].
 fn arm(gravity: f32) -> (World, BodyId, JointDef) {
     let mut world = world(gravity);
     let a = anchor(&mut world);
-    let b = lump(&mut world, Vec3::X * 0.5, 2.0, 0.08);
+    let b = mass_without_shape(&mut world, Vec3::X * 0.5, 2.0, 0.08);
     let def = joint(&world, a, b, facing(Vec3::ZERO), HINGE);
     (world, b, def)
 }
 
+/// Moment of inertia of the arm about its hinge, kg·m².
 const ARM_MOMENT: f32 = 0.58;
 
 fn angle(world: &World, body: BodyId) -> f32 {
@@ -60,7 +61,7 @@ fn turned(angle: f32) -> Transform {
     Transform::new(Vec3::ZERO, Rotation::from_axis_angle(Vec3::X, angle))
 }
 
-fn near(found: f32, expected: f32, share: f32, what: &str) {
+fn assert_near(found: f32, expected: f32, share: f32, what: &str) {
     assert!((found - expected).abs() <= share * expected.abs(), "{what}: {found}, expected {expected}");
 }
 
@@ -75,7 +76,7 @@ fn a_motor_holds_an_arm_with_the_error_of_its_stiffness() {
         let omega = core::f32::consts::TAU * hertz;
         // k φ = m g l cos φ
         let expected = 2.0 * G * 0.5 * trig::cos(sag) / (ARM_MOMENT * omega * omega);
-        near(sag, expected, 0.02, "sag");
+        assert_near(sag, expected, 0.02, "sag");
     }
 }
 
@@ -117,22 +118,27 @@ fn weak_motor_pushes_with_at_most_its_cap() {
     def.motor = Some(Motor::spin(1000.0, 3.0));
     let id = world.add_joint(&def);
     run(&mut world, 1.0);
-    near(world.velocity(b).angular.z, 3.0 / ARM_MOMENT, 0.01, "speed after a second at full torque");
-    near(world.reaction(id).torque.z, 3.0, 1e-3, "torque of the motor while its arm turns");
+    assert_near(world.velocity(b).angular.z, 3.0 / ARM_MOMENT, 0.01, "speed after a second at full torque");
+    assert_near(world.reaction(id).torque.z, 3.0, 1e-3, "torque of the motor while its arm turns");
     let (mut world, b, mut def) = arm(0.0);
     def.motor = Some(Motor::spin(2.0, 3.0));
     let id = world.add_joint(&def);
     run(&mut world, 1.0);
-    near(world.velocity(b).angular.z, 2.0, 0.005, "speed wanted");
+    assert_near(world.velocity(b).angular.z, 2.0, 0.005, "target speed");
     world.set_motor(id, Some(Motor::spin(-2.0, 3.0)));
     run(&mut world, 0.3);
-    near(world.velocity(b).angular.z, 2.0 - 0.3 * 3.0 / ARM_MOMENT, 0.03, "braking at full torque");
+    assert_near(
+        world.velocity(b).angular.z,
+        2.0 - 0.3 * 3.0 / ARM_MOMENT,
+        0.03,
+        "speed after braking at full torque for 0.3 s",
+    );
     run(&mut world, 1.5);
-    near(world.velocity(b).angular.z, -2.0, 0.005, "the other way");
+    assert_near(world.velocity(b).angular.z, -2.0, 0.005, "target speed in the other direction");
 }
 
-/// The stop's impulse does no work for the motor: with any cap the motor brings its load to the new speed and no
-/// faster.
+/// The impulse of the stop must not add to the motor's: with any cap the motor brings its load to the new target speed
+/// and no faster.
 #[test]
 fn a_motor_reversed_at_its_stop_leaves_it_at_its_speed() {
     let mut random = Random::new(57);
@@ -169,7 +175,7 @@ fn a_motor_reversed_at_its_stop_leaves_it_at_its_speed() {
         let way = speed * world.def().dt();
         for step in 1..=20 {
             world.step();
-            // A weak motor needs longer; none moves its load faster than the target.
+            // A weak motor needs longer to reach the target speed; no motor exceeds it.
             let expected = sinew_math::max(stop + way * step as f32, -0.5);
             let gone = at(&world);
             let bar = 2e-4 + 0.01 * way.abs();
@@ -208,7 +214,7 @@ fn a_saturated_motor_that_loses_its_cap_reaches_its_speed() {
     run(&mut world, 0.5);
     world.set_motor(id, Some(Motor::spin(50.0, f32::INFINITY)));
     run(&mut world, 0.1);
-    near(world.velocity(b).angular.z, 50.0, 0.005, "speed wanted");
+    assert_near(world.velocity(b).angular.z, 50.0, 0.005, "target speed");
 }
 
 #[test]
@@ -220,7 +226,7 @@ fn a_motor_too_weak_for_the_load_sinks_and_one_strong_enough_holds() {
             Some(Motor { max_torque: torque, ..Motor::toward(Transform::IDENTITY, spring(20.0, 1.0)) });
         world.add_joint(&def);
         run(&mut world, 2.0);
-        assert_eq!(angle(&world, b) > -0.05, holds, "{torque} N·m: {}", angle(&world, b));
+        assert_eq!(angle(&world, b) > -0.05, holds, "{torque} N·m: angle {} rad", angle(&world, b));
     }
 }
 
@@ -231,7 +237,7 @@ fn motors_in_a_chain_saturate_only_where_they_are_weak() {
     let mut last = anchor(&mut world);
     let mut joints = Vec::new();
     for i in 0..3 {
-        let b = lump(&mut world, Vec3::X * (i as f32 + 0.5), 1.0, 0.08);
+        let b = mass_without_shape(&mut world, Vec3::X * (i as f32 + 0.5), 1.0, 0.08);
         let mut def = joint(&world, last, b, facing(Vec3::X * i as f32), HINGE);
         // Loads: 44, 19.6 and 4.9 N·m.
         let max_torque = [60.0, 10.0, 20.0][i];
@@ -294,7 +300,7 @@ fn saturated_motors_add_only_their_work() {
 fn a_slider_slides_along_its_axis_alone_and_stops_at_its_end() {
     let mut world = world(G);
     let a = anchor(&mut world);
-    let b = lump(&mut world, Vec3::ZERO, 2.0, 0.1);
+    let b = mass_without_shape(&mut world, Vec3::ZERO, 2.0, 0.1);
     let down = Rotation::from_axis_angle(Vec3::Z, -0.5);
     let limit = Some(Range::new(-1.0, 2.0));
     let def = joint(&world, a, b, Transform::new(Vec3::ZERO, down), JointKind::Slider { limit });
@@ -303,22 +309,27 @@ fn a_slider_slides_along_its_axis_alone_and_stops_at_its_end() {
     let slid = world.joint_transform(id);
     // Symplectic Euler falls as if half a substep longer.
     let expected = 0.5 * G * trig::sin(0.5) * 0.5 * (0.5 + 1.0 / 240.0);
-    near(slid.translation.x, expected, 0.005, "travel");
+    assert_near(slid.translation.x, expected, 0.005, "travel");
     assert!(slid.translation.y.abs() < 1e-4 && slid.rotation.angle_to(Rotation::IDENTITY) < 1e-3);
     run(&mut world, 2.0);
-    assert!((world.joint_transform(id).translation.x - 2.0).abs() < 1e-3, "it stops at its end");
+    assert!((world.joint_transform(id).translation.x - 2.0).abs() < 1e-3, "the slider must stop at its end");
     assert!(world.velocity(b).linear.length() < 1e-3);
     world.set_motor(id, Some(Motor::push(-1.0, 100.0)));
     run(&mut world, 1.0);
-    near(world.joint_transform(id).translation.x, 1.0, 0.02, "driven back");
+    assert_near(
+        world.joint_transform(id).translation.x,
+        1.0,
+        0.02,
+        "position after the motor drives the slider back",
+    );
 }
 
 #[test]
-fn distances_are_rods_ropes_and_springs() {
+fn distance_joints_act_as_rods_ropes_and_springs() {
     // A rod swings at its length.
     let mut rod = world(G);
     let a = anchor(&mut rod);
-    let b = lump(&mut rod, Vec3::X, 1.0, 0.01);
+    let b = mass_without_shape(&mut rod, Vec3::X, 1.0, 0.01);
     let kind = JointKind::Distance { range: Range::new(1.0, 1.0) };
     let id = rod.add_joint(&JointDef::between(a, b, Transform::IDENTITY, Transform::IDENTITY, kind));
     for _ in 0..300 {
@@ -328,19 +339,19 @@ fn distances_are_rods_ropes_and_springs() {
     // A rope lets its end fall freely, then stops it.
     let mut rope = world(G);
     let a = anchor(&mut rope);
-    let b = lump(&mut rope, Vec3::X * 0.1, 1.0, 0.01);
+    let b = mass_without_shape(&mut rope, Vec3::X * 0.1, 1.0, 0.01);
     let kind = JointKind::Distance { range: Range::new(0.0, 1.5) };
     let id = rope.add_joint(&JointDef::between(a, b, Transform::IDENTITY, Transform::IDENTITY, kind));
     run(&mut rope, 0.3);
-    near(-rope.center_of_mass(b).y, 0.5 * G * 0.3 * (0.3 + 1.0 / 240.0), 0.01, "slack");
+    assert_near(-rope.center_of_mass(b).y, 0.5 * G * 0.3 * (0.3 + 1.0 / 240.0), 0.01, "slack");
     for _ in 0..600 {
         rope.step();
-        assert!(rope.joint_gap(id) < 5e-3, "the rope holds: {}", rope.joint_gap(id));
+        assert!(rope.joint_gap(id) < 5e-3, "the rope must stop its end; gap {} m", rope.joint_gap(id));
     }
     // A spring stretches by mg/k.
     let mut elastic = world(G);
     let a = anchor(&mut elastic);
-    let b = lump(&mut elastic, Vec3::NEG_Y, 3.0, 0.01);
+    let b = mass_without_shape(&mut elastic, Vec3::NEG_Y, 3.0, 0.01);
     let kind = JointKind::Distance { range: Range::new(0.0, 100.0) };
     let mut def = JointDef::between(a, b, Transform::IDENTITY, Transform::IDENTITY, kind);
     def.spring = Some(Spring {
@@ -349,14 +360,14 @@ fn distances_are_rods_ropes_and_springs() {
     });
     elastic.add_joint(&def);
     run(&mut elastic, 10.0);
-    near(-elastic.center_of_mass(b).y - 1.0, 3.0 * G / 500.0, 0.005, "mg/k");
+    assert_near(-elastic.center_of_mass(b).y - 1.0, 3.0 * G / 500.0, 0.005, "mg/k");
 }
 
 #[test]
 fn an_undamped_spring_keeps_its_period_and_energy() {
     let mut world = world(0.0);
     let a = anchor(&mut world);
-    let b = lump(&mut world, Vec3::X * 0.2, 2.0, 0.1);
+    let b = mass_without_shape(&mut world, Vec3::X * 0.2, 2.0, 0.1);
     let kind = JointKind::Slider { limit: None };
     let mut def = JointDef::between(a, b, Transform::IDENTITY, Transform::IDENTITY, kind);
     def.spring = Some(Spring { softness: spring(1.5, 0.0), rest: Transform::IDENTITY });
@@ -365,7 +376,7 @@ fn an_undamped_spring_keeps_its_period_and_energy() {
         world.step();
         let expected = 0.2 * trig::cos(core::f32::consts::TAU * 1.5 * step as f32 / 60.0);
         let found = world.center_of_mass(b).x;
-        assert!((found - expected).abs() < 0.008, "step {step}: {found}, expected {expected}");
+        assert!((found - expected).abs() < 0.008, "step {step}: position {found} m, expected {expected} m");
     }
 }
 
@@ -373,15 +384,15 @@ fn an_undamped_spring_keeps_its_period_and_energy() {
 fn a_soft_weld_bends_under_load_by_its_stiffness() {
     let mut world = world(G);
     let a = anchor(&mut world);
-    let b = lump(&mut world, Vec3::X * 0.5, 1.0, 0.05);
+    let b = mass_without_shape(&mut world, Vec3::X * 0.5, 1.0, 0.05);
     let mut def = joint(&world, a, b, Transform::IDENTITY, JointKind::Fixed);
     def.weld = Some(Softness::Stiffness { stiffness: 400.0, damping: 40.0 });
     let id = world.add_joint(&def);
     run(&mut world, 8.0);
     let bent = world.joint_transform(id);
     let moment = G * world.center_of_mass(b).x;
-    near(-bent.rotation.to_scaled_axis().z, moment / 400.0, 0.02, "bend");
-    near(-bent.translation.y, G / 400.0, 0.02, "sag");
+    assert_near(-bent.rotation.to_scaled_axis().z, moment / 400.0, 0.02, "bend");
+    assert_near(-bent.translation.y, G / 400.0, 0.02, "sag");
     let exact = joint(&world, a, b, Transform::IDENTITY, JointKind::Fixed);
     let exact = JointDef { frame_a: exact.frame_a, frame_b: def.frame_b, ..exact };
     world.set_joint(id, &exact);
@@ -403,7 +414,7 @@ fn six_dof_directions_are_free_or_locked_as_defined() {
     };
     let mut world = world(0.0);
     let a = anchor(&mut world);
-    let b = lump(&mut world, Vec3::ZERO, 1.0, 0.1);
+    let b = mass_without_shape(&mut world, Vec3::ZERO, 1.0, 0.1);
     let kind = JointKind::SixDof(six);
     let id = world.add_joint(&joint(&world, a, b, Transform::IDENTITY, kind));
     world.set_velocity(b, Velocity { linear: Vec3::new(1.0, 1.0, 1.0), angular: Vec3::new(1.0, 1.0, 1.0) });
@@ -412,18 +423,18 @@ fn six_dof_directions_are_free_or_locked_as_defined() {
         assert!(world.joint_gap(id) < 1e-3);
     }
     let seen = world.joint_transform(id);
-    near(seen.translation.x, 1.0, 0.01, "free travel");
+    assert_near(seen.translation.x, 1.0, 0.01, "translation along the free axis");
     assert!(seen.translation.y.abs() < 1e-4 && (seen.translation.z - 0.1).abs() < 2e-3, "{seen:?}");
     let v = seen.rotation.to_scaled_axis();
     assert!(v.x.abs() < 5e-3 && v.y.abs() < 5e-3, "{v}");
-    near(v.z, 1.0, 0.02, "free turn");
+    assert_near(v.z, 1.0, 0.02, "rotation rate about the free axis");
 }
 
 #[test]
-fn a_drag_joint_pulls_with_bounded_force() {
+fn drag_joint_pulls_with_at_most_its_force() {
     let mut world = world(G);
     let hand = anchor(&mut world);
-    let b = lump(&mut world, Vec3::new(2.0, 0.0, 0.0), 3.0, 0.1);
+    let b = mass_without_shape(&mut world, Vec3::new(2.0, 0.0, 0.0), 3.0, 0.1);
     let id = world.add_joint(&JointDef::drag(hand, b, Vec3::ZERO, spring(3.0, 1.0), 200.0));
     run(&mut world, 4.0);
     let omega = core::f32::consts::TAU * 3.0;
@@ -433,12 +444,18 @@ fn a_drag_joint_pulls_with_bounded_force() {
         "{}",
         world.center_of_mass(b)
     );
-    let weak = Motor { max_force: 20.0, max_torque: 0.0, ..world.joint(id).motor.expect("it has one") };
+    let weak =
+        Motor { max_force: 20.0, max_torque: 0.0, ..world.joint(id).motor.expect("the joint has a motor") };
     world.set_motor(id, Some(weak));
     let before = world.center_of_mass(b).y;
     run(&mut world, 1.0);
     // Pull of 20 N against a weight of 29.43 N.
-    near(before - world.center_of_mass(b).y, 0.5 * (G - 20.0 / 3.0), 0.02, "fall under the pull");
+    assert_near(
+        before - world.center_of_mass(b).y,
+        0.5 * (G - 20.0 / 3.0),
+        0.02,
+        "fall while the joint pulls with 20 N",
+    );
 }
 
 #[test]
@@ -448,22 +465,22 @@ fn friction_slows_a_hinge_by_its_torque() {
     world.add_joint(&def);
     world.set_velocity(b, Velocity { linear: Vec3::Y * 2.5, angular: Vec3::Z * 5.0 });
     run(&mut world, 2.0);
-    near(world.velocity(b).angular.z, 5.0 - 2.0 * 0.5 / ARM_MOMENT, 0.02, "slowed");
+    assert_near(world.velocity(b).angular.z, 5.0 - 2.0 * 0.5 / ARM_MOMENT, 0.02, "slowed");
     run(&mut world, 6.0);
-    assert!(world.velocity(b).angular.length() < 1e-3, "and stopped");
+    assert!(world.velocity(b).angular.length() < 1e-3, "friction must stop the hinge");
 }
 
 #[test]
-fn friction_set_later_acts_at_once() {
+fn friction_set_later_acts_immediately() {
     let (mut world, b, def) = arm(0.0);
     let id = world.add_joint(&def);
     world.set_velocity(b, Velocity { linear: Vec3::Y * 2.5, angular: Vec3::Z * 5.0 });
     run(&mut world, 1.0);
-    near(world.velocity(b).angular.z, 5.0, 0.001, "not slowed");
+    assert_near(world.velocity(b).angular.z, 5.0, 0.001, "speed without friction");
     world.set_joint_friction(id, 0.5);
     assert_eq!(world.joint(id).friction_torque, 0.5);
     run(&mut world, 2.0);
-    near(world.velocity(b).angular.z, 5.0 - 2.0 * 0.5 / ARM_MOMENT, 0.02, "slowed");
+    assert_near(world.velocity(b).angular.z, 5.0 - 2.0 * 0.5 / ARM_MOMENT, 0.02, "slowed");
 }
 
 #[test]
@@ -472,29 +489,34 @@ fn reactions_equal_the_hanging_weights() {
     let mut last = anchor(&mut world);
     let mut joints = Vec::new();
     for i in 0..5 {
-        let b = lump(&mut world, Vec3::NEG_Y * (i as f32 + 0.5), 1.0 + i as f32, 0.1);
+        let b = mass_without_shape(&mut world, Vec3::NEG_Y * (i as f32 + 0.5), 1.0 + i as f32, 0.1);
         joints.push(world.add_joint(&ball(&world, last, b, Vec3::NEG_Y * i as f32)));
         last = b;
     }
     run(&mut world, 1.0);
     for (i, &id) in joints.iter().enumerate() {
         let below: f32 = (i..5).map(|k| 1.0 + k as f32).sum();
-        near(world.reaction(id).force.y, below * G, 0.001, "weight below");
+        assert_near(
+            world.reaction(id).force.y,
+            below * G,
+            0.001,
+            "force of the joint, which carries the weight below it",
+        );
     }
     // Beam fixed at one end: the moment is that of its weight.
     let mut beam = self::world(G);
     let a = anchor(&mut beam);
-    let b = lump(&mut beam, Vec3::X * 0.5, 4.0, 0.3);
+    let b = mass_without_shape(&mut beam, Vec3::X * 0.5, 4.0, 0.3);
     let id = beam.add_joint(&joint(&beam, a, b, Transform::IDENTITY, JointKind::Fixed));
     run(&mut beam, 0.5);
-    near(beam.reaction(id).torque.z, 4.0 * G * 0.5, 0.001, "moment of the beam");
+    assert_near(beam.reaction(id).torque.z, 4.0 * G * 0.5, 0.001, "moment of the beam");
 }
 
 #[test]
 fn reactions_include_weights_on_springs() {
     let mut world = world(G);
     let a = anchor(&mut world);
-    let b = lump(&mut world, Vec3::NEG_Y * 0.5, 1.0, 0.1);
+    let b = mass_without_shape(&mut world, Vec3::NEG_Y * 0.5, 1.0, 0.1);
     let id = world.add_joint(&ball(&world, a, b, Vec3::ZERO));
     let (from, to) = (Vec3::NEG_Y * 0.5, Vec3::NEG_Y * 1.5);
     let mut rope = RopeDef { from, to, links: 8, mass: 0.2, stiffness: 1e4, radius: 0.01 }.build().group;
@@ -502,7 +524,7 @@ fn reactions_include_weights_on_springs() {
     rope.attachments = vec![AttachmentDef { particle: 0, target }];
     world.add_particles(&rope);
     run(&mut world, 3.0);
-    near(world.reaction(id).force.y, 1.2 * G, 0.0005, "weight of the body and its rope");
+    assert_near(world.reaction(id).force.y, 1.2 * G, 0.0005, "weight of the body and its rope");
 }
 
 #[test]
@@ -510,7 +532,7 @@ fn joints_break_above_their_strength_and_report() {
     for (strength, breaks) in [(18.0, true), (21.0, false)] {
         let mut world = world(G);
         let a = anchor(&mut world);
-        let b = lump(&mut world, Vec3::NEG_Y, 2.0, 0.1); // 19.62 N
+        let b = mass_without_shape(&mut world, Vec3::NEG_Y, 2.0, 0.1); // 19.62 N
         let mut def = ball(&world, a, b, Vec3::ZERO);
         def.strength = Strength { force: strength, ..Strength::UNBREAKABLE };
         let id = world.add_joint(&def);
@@ -521,7 +543,11 @@ fn joints_break_above_their_strength_and_report() {
         }
         assert_eq!(told, usize::from(breaks), "strength {strength}");
         assert_eq!(world.joint(id).state == JointState::Disabled, breaks);
-        assert_eq!(world.center_of_mass(b).y < -1.5, breaks, "it falls if it broke");
+        assert_eq!(
+            world.center_of_mass(b).y < -1.5,
+            breaks,
+            "the body must fall exactly if the joint breaks"
+        );
         if breaks {
             world.set_joint(
                 id,
@@ -539,7 +565,7 @@ fn joints_break_above_their_strength_and_report() {
     // Breaks by torque.
     let mut world = world(G);
     let a = anchor(&mut world);
-    let b = lump(&mut world, Vec3::X, 1.0, 0.1);
+    let b = mass_without_shape(&mut world, Vec3::X, 1.0, 0.1);
     let mut def = joint(&world, a, b, Transform::IDENTITY, JointKind::Fixed);
     def.strength = Strength { torque: 9.0, ..Strength::UNBREAKABLE };
     world.add_joint(&def);
@@ -555,7 +581,7 @@ fn soft_limits_yield_by_their_stiffness() {
     world.add_joint(&def);
     run(&mut world, 5.0);
     let at = -angle(&world, b);
-    near(at - 0.2, G * trig::cos(at) / 100.0, 0.02, "beyond the soft stop");
+    assert_near(at - 0.2, G * trig::cos(at) / 100.0, 0.02, "beyond the soft stop");
 }
 
 #[test]
@@ -605,7 +631,7 @@ fn limits_hold_against_load_for_every_kind() {
             let mut world =
                 World::new(WorldDef { gravity: pull, sleeping: Sleeping::Off, ..WorldDef::default() });
             let a = anchor(&mut world);
-            let b = lump(&mut world, Vec3::X * 0.5, 2.0, 0.08);
+            let b = mass_without_shape(&mut world, Vec3::X * 0.5, 2.0, 0.08);
             let mut def = joint(&world, a, b, Transform::IDENTITY, kind);
             if matches!(kind, JointKind::Distance { .. }) {
                 def.frame_b = Transform::IDENTITY;
@@ -630,7 +656,7 @@ fn limits_hold_against_load_for_every_kind() {
 fn a_four_bar_linkage_of_hinges_stays_closed() {
     let mut world = world(G);
     let a = anchor(&mut world);
-    let bar = |world: &mut World, at: Vec3| lump(world, at, 1.0, 0.1);
+    let bar = |world: &mut World, at: Vec3| mass_without_shape(world, at, 1.0, 0.1);
     let left = bar(&mut world, Vec3::new(0.0, -0.5, 0.0));
     let right = bar(&mut world, Vec3::new(1.0, -0.5, 0.0));
     let low = bar(&mut world, Vec3::new(0.5, -1.0, 0.0));
@@ -655,9 +681,9 @@ fn a_four_bar_linkage_of_hinges_stays_closed() {
         assert!(level < 5e-3, "the lower bar must stay level; angle {level}");
     }
     let drift = (world.energy().total() - start) / (3.0 * G);
-    assert!(gap < 1e-4, "gap {gap}");
+    assert!(gap < 1e-4, "the loop must stay closed; gap {gap} m");
     assert!(drift.abs() < 0.01, "energy drift {drift}");
-    assert!(swing > 0.2, "it swings: {swing}");
+    assert!(swing > 0.2, "the linkage must swing; amplitude {swing}");
 }
 
 #[test]
@@ -670,7 +696,7 @@ fn a_ring_of_links_hangs_from_two_points_without_a_gap() {
         Vec3::new(trig::cos(angle), trig::sin(angle), 0.0)
     };
     let links: Vec<BodyId> = (0..n)
-        .map(|i| lump(&mut world, (at(i) + at(i + 1)) * 0.5, 1.0 + 20.0 * (i % 2) as f32, 0.02))
+        .map(|i| mass_without_shape(&mut world, (at(i) + at(i + 1)) * 0.5, 1.0 + 20.0 * (i % 2) as f32, 0.02))
         .collect();
     let mut joints = Vec::new();
     for i in 0..n {
@@ -683,7 +709,7 @@ fn a_ring_of_links_hangs_from_two_points_without_a_gap() {
         world.step();
         gap = joints.iter().map(|&id| world.joint_gap(id)).fold(gap, f32::max);
     }
-    assert!(gap < 1e-3, "gap {gap}");
+    assert!(gap < 1e-3, "the loop must stay closed; gap {gap} m");
 }
 
 #[test]
@@ -696,7 +722,7 @@ fn a_stiff_spring_that_pulls_beyond_a_stop_rests_at_it() {
     for step in 0..240 {
         world.step();
         let (at, speed) = (angle(&world, b), world.velocity(b).angular.length());
-        assert!(at > -0.32, "step {step}: {at} rad");
+        assert!(at > -0.32, "step {step}: angle {at} rad is beyond the stop");
         assert!(step < 60 || speed < 0.01, "step {step}: spins at {speed} rad/s");
     }
 }
@@ -706,7 +732,7 @@ fn a_damped_weld_holds_a_body_that_turns() {
     // The load m ω² r stretches the weld by 1.5 µm; rows along the initial direction would lose 0.1 mm per substep.
     let mut world = world(0.0);
     let anchor = anchor(&mut world);
-    let b = lump(&mut world, Vec3::X * 0.3, 0.05, 1e-4);
+    let b = mass_without_shape(&mut world, Vec3::X * 0.3, 0.05, 1e-4);
     let at = Transform::IDENTITY;
     let softness = Softness::Stiffness { stiffness: 1e6, damping: 1e5 };
     let id = world.add_joint(&JointDef {
@@ -722,5 +748,5 @@ fn a_damped_weld_holds_a_body_that_turns() {
     });
     world.set_velocity(b, Velocity { linear: Vec3::Y * 3.0, angular: Vec3::Z * 10.0 });
     run(&mut world, 5.0);
-    assert!(world.joint_gap(id) < 1e-5, "{} m", world.joint_gap(id));
+    assert!(world.joint_gap(id) < 1e-5, "joint gap {} m", world.joint_gap(id));
 }

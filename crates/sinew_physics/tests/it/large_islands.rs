@@ -1,4 +1,4 @@
-//! Islands so large that several threads solve them give the same bits as on one thread.
+//! Islands that are large enough for several threads have the same bits as on one thread.
 
 use sinew_math::{Random, Vec3};
 use sinew_physics::stage::{Counter, NoProfiler, Profiler, Stage};
@@ -46,7 +46,7 @@ fn pit(side: usize, layers: usize) -> World {
     world
 }
 
-/// Profiler that stores the largest number of contacts of an island.
+/// Profiler that stores the largest number of manifolds of one island.
 #[derive(Default)]
 struct Most(AtomicUsize);
 
@@ -73,7 +73,7 @@ impl TaskRunner for Careless {
 }
 
 /// Returns the hash after each step.
-fn course(runner: &dyn TaskRunner, steps: usize) -> Vec<u64> {
+fn hashes(runner: &dyn TaskRunner, steps: usize) -> Vec<u64> {
     let mut world = pit(15, 6);
     let step = |_| {
         world.step_with(runner, &NoProfiler);
@@ -85,11 +85,11 @@ fn course(runner: &dyn TaskRunner, steps: usize) -> Vec<u64> {
 #[test]
 fn several_threads_give_the_bits_of_one() {
     let steps = 40;
-    let alone = course(&Serial, steps);
+    let alone = hashes(&Serial, steps);
     for runner in
         [&Threads::new(2) as &dyn TaskRunner, &Threads::new(3), &Threads::new(5), &Careless(0), &Careless(99)]
     {
-        assert_eq!(course(runner, steps), alone);
+        assert_eq!(hashes(runner, steps), alone);
     }
 }
 

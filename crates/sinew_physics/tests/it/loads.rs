@@ -13,7 +13,7 @@ const CELLS: u32 = 12;
 const BALL: f32 = 0.3;
 const RADIUS: f32 = 0.02;
 
-/// Returns a net of 2 kg and four square metres at a height of 2 m, held at its border, without friction.
+/// Returns a frictionless net of 2 kg and 4 m², held at its border at a height of 2 m.
 fn net(stretching: f32) -> GroupDef {
     let net = ClothDef {
         corner: Vec3::new(-1.0, 2.0, -1.0),
@@ -45,8 +45,8 @@ fn difference(a: [f64; 3], b: [f64; 3]) -> ([f64; 3], f64) {
     (d, d.iter().map(|x| x * x).sum::<f64>().sqrt())
 }
 
-/// Returns the height of the centre of a ball of `mass` kg at rest without friction in the net, metres. Uses dynamic
-/// relaxation with kinetic damping in 64 bits; the ball is a stiff spring.
+/// Returns the height of the centre of a ball of `mass` kg at rest in the frictionless net, metres. Uses dynamic
+/// relaxation with kinetic damping in 64 bits; a stiff spring replaces the contact with the ball.
 fn rest_height(def: &GroupDef, mass: f64) -> f64 {
     const STIFF: f64 = 1e6;
     let mut at: Vec<_> = def.particles.iter().map(|p| p.position.to_array().map(f64::from)).collect();
@@ -123,14 +123,14 @@ fn a_net_carries_fifty_times_its_mass_at_the_static_height() {
             world.step();
         }
         let what = format!("{mass} kg on a net of {stretching} N/m");
-        assert!(!world.is_awake(ball), "{what} rest");
+        assert!(!world.is_awake(ball), "{what}: the ball must sleep");
         let at = world.center_of_mass(ball);
         let (sag, due) = (above - at.y, above - rest_height(&def, f64::from(mass)) as f32);
         println!("{what}: sag {sag} m, expected {due} m");
         assert!((sag / due - 1.0).abs() < 0.01, "{what}: sag {sag} m, expected {due} m");
         let gap = |p: &Vec3| (*p - at).length() - BALL - RADIUS;
         let deepest = world.particles(group).positions().iter().map(gap).fold(1.0, sinew_math::min);
-        assert!(deepest > -1e-5, "{what}: {deepest} m");
+        assert!(deepest > -1e-5, "{what}: a particle is {deepest} m from the ball's surface");
     }
 }
 
@@ -154,8 +154,8 @@ fn solved(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     found
 }
 
-/// Velocities of random spring networks with some held particles, after a substep, solve `(M + h² K + h D) v⁺ = M v + h
-/// f`.
+/// After a substep, the velocities `v⁺` of random spring networks with some held particles satisfy
+/// `(M + h² K + h D) v⁺ = M v + h f`.
 #[test]
 fn loops_match_the_dense_solution() {
     const H: f32 = 1.0 / 240.0;
@@ -281,11 +281,11 @@ fn bridge(tension: f32) -> World {
     world
 }
 
-/// Two ropes through the same planks close loops. Solved one after the other, they threw planks off the bridge with 388
-/// J.
+/// Two ropes through the same planks close loops. When the solver handled one rope after the other, planks gained up to
+/// 388 J and left the bridge.
 ///
-/// Planks move before springs act, so a swing back is stretched by `v h` too much: at 10 kN, `k h²/m` is 2.2 at a
-/// plank's corner.
+/// Planks move before springs act, so springs of a plank that swings back are too long by `v h`. At 10 kN, `k h²/m` is
+/// 2.2 at a plank's corner.
 #[test]
 fn two_ropes_through_planks_add_little_energy() {
     for (tension, most) in [(1e3, 1.5), (1e4, 15.0)] {

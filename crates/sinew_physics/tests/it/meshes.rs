@@ -87,7 +87,8 @@ fn ground(world: &mut World, shape: Shape, friction: f32) -> BodyId {
     })
 }
 
-/// Returns the largest vertical deviation, metres, and the speed after two seconds, m/s.
+/// Lets a body slide for two seconds. Returns the largest change of its height after it has settled, metres, and its
+/// final speed, m/s.
 fn slide(floor: &Shape, slider: &Shape, height: f32, speed: f32, friction: f32) -> (f32, f32) {
     let mut world = World::new(WorldDef::default());
     ground(&mut world, floor.clone(), friction);
@@ -134,17 +135,17 @@ fn sliders() -> [(Shape, f32); 4] {
 }
 
 #[test]
-fn friction_on_a_tiled_floor_is_that_of_a_plane() {
+fn friction_on_a_tiled_floor_equals_friction_on_a_plane() {
     for floor in [Floor::Plain, Floor::Shuffled, Floor::Field] {
         let shape = floor_shape(floor);
         for (slider, height) in
             sliders().into_iter().filter(|(slider, _)| matches!(slider, Shape::Box { .. }))
         {
             let (deviation, end) = slide(&shape, &slider, height, 20.0, FRICTION);
-            // Two seconds without the first substep.
+            // The body decelerates for two seconds less one substep.
             let expected = 20.0 - FRICTION * 9.81 * 2.0;
             println!("{floor:?} {slider:?}: {deviation} m, {end} m/s for {expected}");
-            assert!(deviation < 1e-3, "{floor:?} {slider:?}: off its line by {deviation} m");
+            assert!(deviation < 1e-3, "{floor:?} {slider:?}: its height changes by {deviation} m");
             assert!(
                 (end - expected).abs() < 0.01 * (20.0 - expected),
                 "{floor:?} {slider:?}: final speed {end} m/s"
@@ -161,7 +162,10 @@ fn bodies_slide_over_a_tiled_floor_without_catching() {
             for speed in [1.0, 5.0, 20.0] {
                 let (deviation, end) = slide(&shape, &slider, height, speed, 0.0);
                 println!("{floor:?} {slider:?} {speed} m/s: {deviation} m, {end} m/s");
-                assert!(deviation < 1e-3, "{floor:?} {slider:?} {speed} m/s: off its line by {deviation} m");
+                assert!(
+                    deviation < 1e-3,
+                    "{floor:?} {slider:?} {speed} m/s: its height changes by {deviation} m"
+                );
                 assert!(
                     (end - speed).abs() < 1e-3 * speed,
                     "{floor:?} {slider:?} {speed} m/s: final speed {end} m/s"

@@ -1,4 +1,4 @@
-//! Strands, cloth and blobs, and fast particles.
+//! Strands, cloth, blobs and fast particles, compared with closed forms.
 
 use crate::build::floor;
 use sinew_math::{Random, Sym3, Transform, Vec3, max, min};
@@ -22,7 +22,7 @@ fn run_without_gain(world: &mut World, steps: usize) {
         let before = world.energy();
         world.step();
         let rise = world.energy().total() - before.total();
-        assert!(rise < 0.01 * max(before.kinetic, 1.0), "step {step}: {rise} J");
+        assert!(rise < 0.01 * max(before.kinetic, 1.0), "step {step}: the energy rose by {rise} J");
     }
 }
 
@@ -50,7 +50,7 @@ fn a_strand_bends_as_a_beam() {
     let id = world.add_particles(&strand.group);
     run(&mut world, 600);
     let tip = -world.particles(id).positions()[LINKS as usize].y;
-    assert!((tip / sunk - 1.0).abs() < 0.005, "{tip} m, {sunk} m");
+    assert!((tip / sunk - 1.0).abs() < 0.005, "the tip sank by {sunk} m, expected {tip} m");
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn a_chain_of_fifty_masses_stretches_by_mg_over_k() {
 /// Half a period of a mass on a spring: at a damping ratio of 0.2 the mass returns to exp(−π ζ/√(1 − ζ²)) = 0.53 of its
 /// height, at 1 it never passes its rest position, and a string does not push.
 #[test]
-fn springs_are_damped_by_their_ratio_and_may_go_slack() {
+fn springs_follow_their_damping_ratio_and_strings_do_not_push() {
     let lowest = |ratio: f32, resists: Resists| {
         let hung =
             |y: f32| ParticleDef { position: Vec3::Y * y, velocity: Vec3::ZERO, mass: 2.0, radius: 0.0 };
@@ -108,13 +108,13 @@ fn springs_are_damped_by_their_ratio_and_may_go_slack() {
         -shortest
     };
     let back = lowest(0.2, Resists::Both) / 0.1;
-    assert!((back - 0.527).abs() < 0.02, "{back}");
+    assert!((back - 0.527).abs() < 0.02, "the mass returned to {back} of its height, expected 0.527");
     assert!(lowest(1.0, Resists::Both) < 1e-3);
-    assert!(lowest(0.0, Resists::Stretch) > 0.5, "nothing stops it");
+    assert!(lowest(0.0, Resists::Stretch) > 0.5, "a string must not stop the mass on its way back");
 }
 
 #[test]
-fn numbers_that_are_not_finite_panic_in_the_setter() {
+fn group_setters_panic_on_nonfinite_numbers() {
     let def = GroupDef {
         particles: vec![ParticleDef { position: Vec3::ZERO, velocity: Vec3::ZERO, mass: 1.0, radius: 0.0 }],
         ..GroupDef::default()
@@ -129,7 +129,7 @@ fn numbers_that_are_not_finite_panic_in_the_setter() {
         assert!(panics(&|group| group.set_position(0, bad)));
         let broken =
             GroupDef { particles: vec![ParticleDef { velocity: bad, ..def.particles[0] }], ..def.clone() };
-        assert!(broken.check().is_err());
+        assert!(broken.check().is_err(), "a NaN must not pass the check");
     }
     assert!(GroupDef { linear_damping: f32::NAN, ..def.clone() }.check().is_err());
     assert!(GroupDef { iterations: 0, ..def.clone() }.check().is_err());
@@ -242,9 +242,9 @@ fn a_blob_falls_and_rests() {
     let id = world.add_particles(&blob.group);
     run_without_gain(&mut world, 300);
     let group = world.particles(id);
-    assert!((group.volume(0) / rest - 1.0).abs() < 0.01, "{} of {rest} m³", group.volume(0));
+    assert!((group.volume(0) / rest - 1.0).abs() < 0.01, "volume {} m³, at rest {rest} m³", group.volume(0));
     let lowest = group.positions().iter().fold(1.0, |low, p| min(low, p.y));
-    assert!((lowest - 0.005).abs() < 1e-3, "{lowest}");
+    assert!((lowest - 0.005).abs() < 1e-3, "the lowest particle is at {lowest} m, expected 0.005 m");
 }
 
 /// Air pressed to half its height expands to the sides.
@@ -280,5 +280,5 @@ fn a_pressed_blob_keeps_its_volume() {
         assert!((kept - 1.0).abs() < 0.01, "{kept} of the volume remains under the plate");
     }
     let highest = world.particles(id).positions().iter().fold(0.0, |high, p| max(high, p.y));
-    assert!(highest < 0.13, "{highest} m of 0.25");
+    assert!(highest < 0.13, "the highest particle is at {highest} m; the blob was 0.25 m high");
 }

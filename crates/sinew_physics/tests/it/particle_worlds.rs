@@ -1,7 +1,8 @@
 //! Random worlds with ropes, strands, cloth, blobs and grains among bodies: numbers stay finite, no particle is deeper
 //! in a fixed shape than its radius, no world gains energy, and two threads give the same bits as one.
 //!
-//! `SINEW_WORLDS=100..200 cargo test --release -p sinew_physics --test it -- --nocapture worlds_of_particles` runs other seeds.
+//! `SINEW_WORLDS=100..200 cargo test --release -p sinew_physics --test it -- --nocapture worlds_of_particles` runs
+//! other seeds.
 
 use crate::random_worlds::asked_seeds;
 use sinew_math::{Random, Reader, Rotation, Vec3, Writer, max};
@@ -10,8 +11,8 @@ use sinew_physics::{BodyDef, BodyKind, Shape, ShapeDef, Threads, Velocity, World
 
 const STEPS: usize = 600;
 
-/// Seeds of a plain run: the first ones, and those in which ropes or cloth once gained joules, or cloth was once pushed
-/// into the ground.
+/// Seeds of a default run: the first ones, and those in which ropes or cloth once gained energy or cloth once sank into
+/// the ground.
 const SEEDS: [u64; 25] = [
     0, 1, 2, 3, 4, 5, 6, 7, 20, 21, 101, 113, 117, 171, 382, 564, 689, 3271, 3581, 4023, 4087, 6871, 9488,
     9553, 9775,
@@ -26,7 +27,8 @@ const GAIN: f32 = 0.01;
 /// Steps in which stretched springs release their energy: in these worlds five steps release most of it.
 const RELEASE_STEPS: usize = 30;
 
-/// Returns cloth at the rope's corner, with the rope's mass and radius.
+/// Returns cloth that starts at the rope's first end, with the rope's mass and radius. `hang`: two corners are
+/// held.
 fn cloth(random: &mut Random, rope: &RopeDef, damping_ratio: f32, hang: bool) -> GroupDef {
     let turn = Rotation::from_axis_angle(Vec3::Y, random.range(-3.0, 3.0));
     let mut cloth = ClothDef {
@@ -104,7 +106,7 @@ fn group(random: &mut Random) -> GroupDef {
     group
 }
 
-/// Returns the world of a seed. `whole`: springs of nets and blobs are also solved as one system.
+/// Returns the world of a seed. `whole`: the springs of nets and blobs are solved as one implicit system.
 fn world(seed: u64, whole: bool) -> World {
     let mut random = Random::new(seed);
     let mut world = World::new(WorldDef::default());
@@ -135,8 +137,8 @@ fn world(seed: u64, whole: bool) -> World {
     world
 }
 
-/// Returns the depth of the deepest particle in a fixed shape beyond its radius, metres. Ignores attached particles,
-/// which are where they are held.
+/// Returns the largest depth of a particle in a fixed shape, minus the particle's radius, metres. Ignores attached
+/// particles, whose positions are prescribed.
 fn beyond(world: &World) -> f32 {
     let mut most = f32::NEG_INFINITY;
     for id in world.group_ids() {
@@ -162,13 +164,13 @@ fn elastic(world: &World) -> f32 {
 /// Returns the energy that springs, bends and volumes release, J: the largest kinetic energy within [`RELEASE_STEPS`]
 /// after all motion is stopped, without gravity.
 ///
-/// [`elastic`] adds the energies that single rows would release. In a net the sum exceeds what all release together
-/// (ADR 0027).
-fn given_back(world: &World) -> f32 {
+/// [`elastic`] adds the energies that each row alone would release. In a net the sum exceeds the energy that all rows
+/// release together (ADR 0027).
+fn released_energy(world: &World) -> f32 {
     let mut stopped = World::new(WorldDef::default());
     let mut state = Writer::new();
     world.save(&mut state);
-    stopped.load(&mut Reader::new(&state.into_bytes())).expect("a world wrote the snapshot");
+    stopped.load(&mut Reader::new(&state.into_bytes())).expect("the snapshot must load");
     stopped.set_gravity(Vec3::ZERO);
     for id in stopped.body_ids().collect::<Vec<_>>() {
         stopped.set_velocity(id, Velocity::default());
@@ -196,16 +198,16 @@ fn mass(world: &World) -> f32 {
 
 #[test]
 fn worlds_of_particles_stay_finite_and_add_no_energy() {
-    are_sound(&asked_seeds().map_or_else(|| SEEDS.to_vec(), Iterator::collect), false);
+    check_worlds(&asked_seeds().map_or_else(|| SEEDS.to_vec(), Iterator::collect), false);
 }
 
 /// Runs the worlds without projected springs. Seeds 0 to 199 pass if requested.
 #[test]
 fn worlds_of_implicit_nets_stay_finite_and_add_no_energy() {
-    are_sound(&asked_seeds().map_or_else(|| SEEDS[..8].to_vec(), Iterator::collect), true);
+    check_worlds(&asked_seeds().map_or_else(|| SEEDS[..8].to_vec(), Iterator::collect), true);
 }
 
-fn are_sound(seeds: &[u64], whole: bool) {
+fn check_worlds(seeds: &[u64], whole: bool) {
     let two = Threads::new(2);
     let mut bad = Vec::new();
     for &seed in seeds {
@@ -217,13 +219,13 @@ fn are_sound(seeds: &[u64], whole: bool) {
             other.step_with(&two, &sinew_physics::stage::NoProfiler);
             let counted = one.energy().total();
             if counted > most {
-                gain = max(gain, counted - elastic(&one) + given_back(&one) - most);
+                gain = max(gain, counted - elastic(&one) + released_energy(&one) - most);
             }
             if step % 20 == 0 {
                 depth = max(depth, beyond(&one));
             }
         }
-        assert_eq!(one.hash(), other.hash(), "world {seed}: other hash on two threads");
+        assert_eq!(one.hash(), other.hash(), "world {seed}: the hash differs on two threads");
         if gain > 0.0 || depth > DEPTH {
             bad.push(format!("world {seed}: {gain} J above the allowed energy, depth {depth} m"));
         }

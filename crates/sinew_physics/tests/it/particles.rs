@@ -73,7 +73,11 @@ fn free_fall_is_symplectic_euler() {
     let h = 1.0 / 240.0;
     run(&mut group, h, 1.0, &[]);
     let expected = -0.5 * 9.81 - 0.5 * 9.81 * h;
-    assert!((group.positions()[0].y - expected).abs() < 1e-4, "{}", group.positions()[0]);
+    assert!(
+        (group.positions()[0].y - expected).abs() < 1e-4,
+        "the particle is at {}, expected height {expected} m",
+        group.positions()[0]
+    );
     assert!((group.velocities()[0].y + 9.81).abs() < 1e-4);
 }
 
@@ -89,7 +93,7 @@ fn one_mass_stretches_its_spring_by_mg_over_k() {
     }
 }
 
-/// Every spring of a chain carries the weight below it, even in a chain of a hundred links.
+/// Every spring of a chain is stretched by the weight below it, even in a chain of a hundred links.
 #[test]
 fn a_chain_stretches_by_mg_over_k_link_by_link() {
     let mut masses = [0.1; 10];
@@ -125,7 +129,7 @@ fn a_mass_on_a_spring_swings_at_its_frequency() {
     let periods = (crossings.len() - 1) as f32;
     let period = (crossings[crossings.len() - 1] - crossings[0]) / periods;
     let expected = core::f32::consts::TAU / 1000f32.sqrt();
-    assert!((period / expected - 1.0).abs() < 0.01, "{period}, {expected}");
+    assert!((period / expected - 1.0).abs() < 0.01, "period {period} s, expected {expected} s");
 }
 
 /// A rope of 12 m between hooks 10 m apart hangs as a catenary: a = 4.6954 m, sag 2.9234 m, tension at the ends that of
@@ -153,10 +157,16 @@ fn a_rope_hangs_as_a_catenary() {
     run(&mut group, 1.0 / 480.0, 20.0, &[]);
     let (a, sag) = (4.6954f64, 2.9234f64);
     let lowest = group.positions().iter().map(|p| p.y).fold(0.0, f32::min);
-    assert!((f64::from(-lowest) / sag - 1.0).abs() < 0.005, "sag {lowest}");
+    assert!(
+        (f64::from(-lowest) / sag - 1.0).abs() < 0.005,
+        "the lowest point is at {lowest} m, expected sag {sag} m"
+    );
     for p in group.positions() {
         let y = a * ((f64::from(p.x) - 5.0) / a).cosh() - a - sag;
-        assert!((f64::from(p.y) - y).abs() < 0.005 * sag, "{p}: {y}");
+        assert!(
+            (f64::from(p.y) - y).abs() < 0.005 * sag,
+            "the rope passes through {p}, expected height {y} m"
+        );
     }
     let pull = group.attachment_impulses()[0].length() * 480.0;
     let expected = 7.6189 * 0.1 * 9.81;
@@ -172,7 +182,7 @@ fn a_spring_that_closes_a_loop_shares_the_load() {
     let mut group = ParticleGroup::new(&def);
     run(&mut group, 1.0 / 480.0, 10.0, &[]);
     let stretch = -group.positions()[1].y - 1.0;
-    assert!((stretch / 0.004_905 - 1.0).abs() < 0.02, "{stretch}");
+    assert!((stretch / 0.004_905 - 1.0).abs() < 0.02, "the spring is stretched by {stretch} m");
     let pull = group.attachment_impulses()[0].y * 480.0;
     assert!((pull + 2.0 * 9.81).abs() < 0.2, "{pull} N at the hook");
 }
@@ -201,15 +211,15 @@ fn a_stiff_spring_moves_a_light_body_both_ways() {
         velocity += group.attachment_impulses()[0];
         position += velocity * h;
         let stretch = (group.positions()[1] - position).length() - 1.0;
-        assert!(stretch.abs() < 0.02, "{stretch}");
+        assert!(stretch.abs() < 0.02, "the spring is stretched by {stretch} m");
     }
     // The 10 g of the attached particle move with the body.
     let momentum = velocity * 1.01 + group.velocities()[1] * 5.0;
-    assert!((momentum - Vec3::new(5.0, 2.5, 0.0)).length() < 0.01 * 5.6, "{momentum}");
+    assert!((momentum - Vec3::new(5.0, 2.5, 0.0)).length() < 0.01 * 5.6, "momentum {momentum} N·s");
 }
 
 #[test]
-fn nothing_tunnels_at_100_metres_a_second() {
+fn particles_at_100_metres_per_second_do_not_tunnel() {
     let plate = Shape::Box { half_extents: Vec3::new(2.0, 0.005, 2.0) };
     let mut random = Random::new(1);
     for case in 0..200 {
@@ -235,7 +245,7 @@ fn nothing_tunnels_at_100_metres_a_second() {
         for _ in 0..20 {
             group.substep(1.0 / 120.0, Vec3::ZERO, &[], core::slice::from_ref(&plate), &mut [STATIC_BODY]);
             let height = (group.positions()[0] - frame.translation).dot(up);
-            assert!(height > 0.005 + radius - 1e-4, "case {case}: {height}");
+            assert!(height > 0.005 + radius - 1e-4, "case {case}: the particle is at height {height} m");
         }
     }
 }
@@ -290,7 +300,8 @@ fn bounces_return_the_square_of_the_restitution() {
     }
 }
 
-/// A particle slides exactly if the slope exceeds the friction angle, with the remaining acceleration.
+/// A particle slides exactly if the slope is steeper than the friction angle. Its acceleration is gravity along the
+/// slope minus friction.
 #[test]
 fn friction_holds_below_its_angle_and_slides_above() {
     let friction: f32 = 0.5;
@@ -309,7 +320,7 @@ fn friction_holds_below_its_angle_and_slides_above() {
         let way = group.positions()[0].length();
         let rate = 9.81 * (trig::sin(angle) - friction * trig::cos(angle));
         if rate < 0.0 {
-            assert!(way < 1e-4, "{degrees}°: {way} m");
+            assert!(way < 1e-4, "{degrees}°: the particle slid {way} m");
         } else {
             let expected = 0.5 * rate * 4.0;
             assert!((way / expected - 1.0).abs() < 0.01, "{degrees}°: slid {way} m, expected {expected} m");
@@ -402,14 +413,14 @@ fn a_body_carries_the_weight_of_a_particle() {
         let impulses = group.body_impulses();
         if step > 60 {
             let sum: f32 = impulses.iter().map(|hit| hit.impulse.y).sum();
-            assert!((sum + 2.0 * 9.81 * h).abs() < 2e-3, "{impulses:?}");
+            assert!((sum + 2.0 * 9.81 * h).abs() < 2e-3, "impulses on the body: {impulses:?}");
             assert!((impulses[0].point - Vec3::new(0.2, 0.1, 0.0)).length() < 2e-3);
             assert!((body[0].linear_velocity.y - 0.1 * sum).abs() < 1e-4);
         }
     }
 }
 
-/// A rope thrown over a box comes to rest on it with hanging ends, and does not sink in.
+/// A rope that falls over a box comes to rest on it with hanging ends, and does not sink into the box.
 #[test]
 fn a_rope_over_a_box_rests() {
     let mut def = RopeDef {
@@ -427,13 +438,16 @@ fn a_rope_over_a_box_rests() {
     let block = obstacle(Shape::Box { half_extents: Vec3::splat(0.5) }, Transform::IDENTITY, 0.6, 0.0);
     run(&mut group, 1.0 / 480.0, 15.0, core::slice::from_ref(&block));
     let fastest = group.velocities().iter().map(|v| v.length()).fold(0.0, f32::max);
-    assert!(fastest < 1e-3, "{fastest} m/s");
+    assert!(fastest < 1e-3, "the fastest particle moves at {fastest} m/s");
     for p in group.positions() {
         let (distance, _) = block.shape.signed_distance(&block.world_from_shape, *p);
-        assert!(distance > 0.02 - 0.001, "{p}: {distance}");
+        assert!(distance > 0.02 - 0.001, "the particle at {p} is {distance} m from the box");
     }
     let ends = [group.positions()[0], group.positions()[60]];
-    assert!(ends.iter().all(|p| p.y < -0.2 && p.y > -0.8), "{ends:?}");
+    assert!(
+        ends.iter().all(|p| p.y < -0.2 && p.y > -0.8),
+        "the ends of the rope must hang; they are at {ends:?}"
+    );
 }
 
 /// A heavy rope lands on a light free box: momentum is exchanged, and neither gets a high speed.
@@ -521,7 +535,7 @@ fn a_rope_over_a_pulley_carries_its_weight_undiminished() {
 }
 
 #[test]
-fn a_loaded_group_continues_equally() {
+fn loaded_group_continues_with_the_same_bits() {
     let mut def = RopeDef {
         from: Vec3::new(-1.0, 0.7, 0.1),
         to: Vec3::new(1.0, 0.7, 0.0),
@@ -549,8 +563,8 @@ fn a_loaded_group_continues_equally() {
     group.save(&mut out);
     let bytes = out.into_bytes();
     let mut input = Reader::new(&bytes);
-    let mut twin = ParticleGroup::load(&mut input).expect("it was just saved");
-    input.finish().expect("all of it was read");
+    let mut twin = ParticleGroup::load(&mut input).expect("the snapshot must load");
+    input.finish().expect("the group's bytes must be read completely");
     run(&mut group, h, 0.5, core::slice::from_ref(&block));
     run(&mut twin, h, 0.5, &[block]);
     let bits = |g: &ParticleGroup| {
@@ -579,12 +593,12 @@ fn a_loaded_group_continues_equally() {
 /// contain it.
 #[test]
 fn an_impact_does_not_change_a_loaded_worlds_future() {
-    // Impacts in different parts of a step.
+    // The impacts happen in different substeps.
     for delay in 0..16 {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
         let wall = box_body(Vec3::ONE, Vec3::X);
         world.add_body(&BodyDef { kind: BodyKind::Static, ..wall });
-        // Beside the path, too slow to count as moving and too fast to rest.
+        // This particle is beside the path, too slow to count as moving and too fast to rest.
         let trembling = box_body(Vec3::splat(0.05), Vec3::new(-0.13, 0.065, 0.0));
         world.add_body(&BodyDef { linear_velocity: Vec3::Y * 0.03, ..trembling });
         let position = Vec3::X * (-1.0 - 0.03 * delay as f32);
@@ -596,13 +610,13 @@ fn an_impact_does_not_change_a_loaded_worlds_future() {
             let mut out = Writer::new();
             world.save(&mut out);
             let mut twin = World::new(WorldDef::default());
-            twin.load(&mut Reader::new(out.as_bytes())).expect("it was just saved");
+            twin.load(&mut Reader::new(out.as_bytes())).expect("the snapshot must load");
             twin.step();
             world.step();
-            assert_eq!(twin.hash(), world.hash(), "delay {delay}, step {step}: other hash");
+            assert_eq!(twin.hash(), world.hash(), "delay {delay}, step {step}: the hashes differ");
         }
         let speed = -world.particles(group).velocities()[0].x;
-        assert!((speed - 1.5).abs() < 0.01, "the wall returns {speed} m/s of 1.5 m/s");
+        assert!((speed - 1.5).abs() < 0.01, "the particle leaves the wall at {speed} m/s, expected 1.5 m/s");
     }
 }
 
@@ -626,7 +640,7 @@ fn a_group_passes_through_its_ignored_bodies() {
     let mut w = Writer::new();
     world.save(&mut w);
     let mut again = World::new(WorldDef::default());
-    again.load(&mut Reader::new(w.as_bytes())).expect("it was saved");
+    again.load(&mut Reader::new(w.as_bytes())).expect("the snapshot must load");
     for world in [&mut world, &mut again] {
         (0..120).for_each(|_| world.step());
         let height = |group| world.particles(group).positions()[0].y;

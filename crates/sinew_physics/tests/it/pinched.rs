@@ -1,4 +1,4 @@
-//! Particles between a body and something fixed: they carry the body, are not pushed in, and add no energy.
+//! Particles between a body and a fixed shape: they carry the body, are not pushed into the shape, and add no energy.
 
 use crate::build::{floor, joint};
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, trig};
@@ -34,13 +34,14 @@ fn world_mass(def: &BodyDef) -> f32 {
 }
 
 /// Returns the depth of the deepest particle in the floor, metres.
-fn sunk(world: &World, id: GroupId) -> f32 {
+fn depth_in_floor(world: &World, id: GroupId) -> f32 {
     let group = world.particles(id);
     let depths = group.positions().iter().zip(group.radii()).map(|(at, radius)| radius - at.y);
     depths.fold(0.0, f32::max)
 }
 
-/// A heavy roller crosses a rope on the ground: it loses energy, the rope gains none, and its particles stay on the ground.
+/// A heavy roller crosses a rope on the ground. The total energy does not rise, and the rope's particles stay on the
+/// ground.
 #[test]
 fn a_roller_crosses_a_rope_without_energy_gain() {
     for (stiffness, turn) in [(1e3, 0.0), (5e4, 0.0), (5e4, 0.7), (5e4, 1.5)] {
@@ -64,7 +65,11 @@ fn a_roller_crosses_a_rope_without_energy_gain() {
             let what = format!("{stiffness} N at {turn} rad, step {step}");
             let gain = world.energy().total() - begin;
             assert!(gain < 0.1, "{what}: the energy rose by {gain} J");
-            assert!(sunk(&world, rope) < 1e-4, "{what}: {} m in the floor", sunk(&world, rope));
+            assert!(
+                depth_in_floor(&world, rope) < 1e-4,
+                "{what}: {} m in the floor",
+                depth_in_floor(&world, rope)
+            );
         }
     }
 }
@@ -94,7 +99,11 @@ fn cloth_on_the_ground_carries_a_roller() {
         world.step();
         let gain = world.energy().total() - begin;
         assert!(gain < 0.1, "step {step}: the energy rose by {gain} J");
-        assert!(sunk(&world, cloth) < 1e-4, "step {step}: {} m in the floor", sunk(&world, cloth));
+        assert!(
+            depth_in_floor(&world, cloth) < 1e-4,
+            "step {step}: {} m in the floor",
+            depth_in_floor(&world, cloth)
+        );
     }
     let height = world.center_of_mass(roller).y - ROLLER;
     assert!(height > 1.8 * RADIUS, "the roller is {height} m above the ground");
@@ -137,11 +146,11 @@ fn rope_end_that_starts_in_a_crease_leaves_it() {
             assert!(energy < most, "bent by {bend}, step {step}: energy {energy} J, bound {most} J");
         }
         let end = world.particles(id).positions()[rope.last as usize];
-        assert!(end.x > 0.05, "bent by {bend}: not yet relaxed, end at {end:?}");
+        assert!(end.x > 0.05, "bent by {bend}: the rope's end must leave the crease; it is at {end:?}");
     }
 }
 
-/// Returns cloth on the ground, in cells of 5 cm, 1 kg/m².
+/// Returns cloth on the ground, with cells of 5 cm and 1 kg/m².
 fn carpet(corner: Vec3, cells: [u32; 2], friction: f32) -> GroupDef {
     let [columns, rows] = cells;
     let (across, down) = (Vec3::X * (0.05 * columns as f32), Vec3::Z * (0.05 * rows as f32));
@@ -177,7 +186,7 @@ fn crate_of(world: &mut World, mass: f32, bottom: f32) -> BodyId {
 
 /// A crate rests on light cloth as on the floor: raised by the thickness of the cloth, still, and asleep.
 #[test]
-fn crates_lie_and_sleep_on_cloth() {
+fn crates_on_cloth_rest_and_fall_asleep() {
     for mass in [1.0, 100.0, 2000.0] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -187,16 +196,21 @@ fn crates_lie_and_sleep_on_cloth() {
             world.step();
         }
         let bottom = world.center_of_mass(id).y - 0.15;
-        // A crate sinks into the floor as deep: a fifth of the slop, and the softness of the contact.
+        // Without cloth, a crate sinks into the floor by the same depth: a fifth of the slop, and the yield of the
+        // soft contact.
         assert!((bottom - 2.0 * RADIUS).abs() < 2e-3, "{mass} kg: the bottom is {bottom} m above the floor");
-        assert!(sunk(&world, cloth) < 1e-4, "{mass} kg: {} m in the floor", sunk(&world, cloth));
+        assert!(
+            depth_in_floor(&world, cloth) < 1e-4,
+            "{mass} kg: {} m in the floor",
+            depth_in_floor(&world, cloth)
+        );
         assert!(!world.is_awake(id), "{mass} kg: still awake after 4 s");
     }
 }
 
 /// A crate that settles on cloth over a sleeping crate wakes that crate, which carries it; both fall asleep.
 #[test]
-fn crates_wake_through_cloth() {
+fn crate_landing_on_cloth_wakes_the_crate_below() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     let below = crate_of(&mut world, 5.0, 0.0);
@@ -208,18 +222,18 @@ fn crates_wake_through_cloth() {
         world.step();
     }
     assert!(!world.is_awake(below), "cloth alone must not wake a body");
-    // The fall is slower than an impact.
+    // The crate falls too slowly to count as an impact.
     let above = crate_of(&mut world, 5.0, 0.3 + 2.0 * RADIUS + 0.001);
     let mut woke = false;
     for _ in 0..30 {
         world.step();
         woke |= world.is_awake(below);
     }
-    assert!(woke, "it lies on it");
+    assert!(woke, "the upper crate must wake the lower one through the cloth");
     for _ in 0..240 {
         world.step();
     }
-    assert!(!world.is_awake(below) && !world.is_awake(above), "they lie still");
+    assert!(!world.is_awake(below) && !world.is_awake(above), "both crates must fall asleep");
 }
 
 /// The load on cloth under a crate holds the cloth by friction: a smaller pull does not move it, a larger one pulls it
@@ -336,7 +350,7 @@ fn a_ball_in_a_narrow_wedge_carries_and_in_a_wide_one_slips_out() {
 
 /// A world loaded from a snapshot during a pinch continues with the same bits.
 #[test]
-fn pinched_contacts_restore_equally() {
+fn restored_pinched_contacts_continue_with_the_same_bits() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     world.add_particles(&carpet(Vec3::new(-0.4, 0.0, -0.4), [16, 16], 0.6));
@@ -350,18 +364,18 @@ fn pinched_contacts_restore_equally() {
         let mut other = World::new(WorldDef::default());
         let mut bytes = Writer::new();
         world.save(&mut bytes);
-        other.load(&mut Reader::new(bytes.as_bytes())).expect("it is a snapshot");
+        other.load(&mut Reader::new(bytes.as_bytes())).expect("the snapshot must load");
         let mut copy = world.clone();
         for _ in 0..20 {
             copy.step();
             other.step();
-            assert_eq!(copy.hash(), other.hash(), "after step {step}");
+            assert_eq!(copy.hash(), other.hash(), "the hashes differ after step {step}");
         }
     }
 }
 
-/// A tether with one end below the floor and the other on it, which the floor keeps from shortening, pulls the body at
-/// its lower end only as hard as it would pull the upper particle, not with the force that would close it.
+/// The floor prevents a tether with one end below it and the other on it from closing. The tether must pull the body at
+/// its lower end only as hard as it pulls the upper particle, not with the force that would close it.
 #[test]
 fn a_tether_through_the_floor_does_not_tear() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -380,8 +394,8 @@ fn a_tether_through_the_floor_does_not_tear() {
     });
     world.step();
     let speed = world.velocity(id).linear.length();
-    // Error of the tether in an iteration as a speed, times a gram over a kilogram.
-    assert!((0.01..0.5).contains(&speed), "{speed} m/s");
+    // Expected: the tether's error per iteration, as a speed, times the mass ratio of a gram to a kilogram.
+    assert!((0.01..0.5).contains(&speed), "the body moves at {speed} m/s");
 }
 
 /// Pinched contacts forget removed bodies and shapes: a world saved afterwards can be loaded.
@@ -401,7 +415,7 @@ fn removed_bodies_leave_no_pinched_contacts() {
         let mut bytes = Writer::new();
         world.save(&mut bytes);
         let mut other = World::new(WorldDef::default());
-        other.load(&mut Reader::new(bytes.as_bytes())).expect("it is a snapshot");
+        other.load(&mut Reader::new(bytes.as_bytes())).expect("the snapshot must load");
         world.step();
         other.step();
         assert_eq!(world.hash(), other.hash());
@@ -430,9 +444,9 @@ fn surface_velocities_and_modifiers_act_through_cloth() {
         (0..60).for_each(|_| world.step());
         let (at, speed) = (world.center_of_mass(id), world.velocity(id).linear.x);
         if drops {
-            assert!(at.y < -0.2, "it is at {at}");
+            assert!(at.y < -0.2, "the crate without a contact must fall through; it is at {at}");
         } else {
-            assert!((speed - 1.0).abs() < 0.1, "{speed} m/s");
+            assert!((speed - 1.0).abs() < 0.1, "the crate moves at {speed} m/s, expected 1 m/s");
         }
     }
 }

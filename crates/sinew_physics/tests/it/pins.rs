@@ -77,12 +77,12 @@ fn a_pinned_body_sags_by_weight_over_stiffness() {
         let expected = 3.0 * G / stiffness;
         assert!((sag - expected).abs() < 0.005 * expected + 2e-7, "sag {sag} m, expected {expected} m");
         let force = world.reaction(id).force;
-        assert!((force - Vec3::Y * 3.0 * G).length() < 0.002 * 3.0 * G, "{force}");
+        assert!((force - Vec3::Y * 3.0 * G).length() < 0.002 * 3.0 * G, "reaction of the pin {force} N");
     }
 }
 
 #[test]
-fn a_chain_with_every_link_pinned_holds_its_joints() {
+fn chain_with_every_link_pinned_keeps_its_joints_closed() {
     let mut world = world();
     let ground = ground(&mut world);
     let (bodies, joints) = chain(&mut world, 12);
@@ -94,7 +94,7 @@ fn a_chain_with_every_link_pinned_holds_its_joints() {
         }
         world.step();
         for &joint in &joints {
-            assert!(world.joint_gap(joint) < 5e-6, "step {i}: {}", world.joint_gap(joint));
+            assert!(world.joint_gap(joint) < 5e-6, "step {i}: joint gap {} m", world.joint_gap(joint));
         }
     }
     for (&body, &pin) in bodies.iter().zip(&pins) {
@@ -103,7 +103,7 @@ fn a_chain_with_every_link_pinned_holds_its_joints() {
         let expected = G / omega2(20.0);
         assert!((sag - expected).abs() < 0.01 * expected, "sag {sag} m, expected {expected} m");
         let force = world.reaction(pin).force;
-        assert!((force - Vec3::Y * mass * G).length() < 0.01 * mass * G, "{force}");
+        assert!((force - Vec3::Y * mass * G).length() < 0.01 * mass * G, "reaction of the pin {force} N");
     }
 }
 
@@ -129,10 +129,14 @@ fn a_weak_pin_pulls_with_its_cap() {
     let ground = ground(&mut world);
     let body = lump(&mut world, Vec3::Y, 4.0);
     let id = pin(&mut world, ground, body, frequency(10.0, 1.0));
-    let motor = world.joint(id).motor.expect("it has one");
+    let motor = world.joint(id).motor.expect("the pin has a motor");
     world.set_motor(id, Some(Motor { max_force: 30.0, ..motor }));
     run(&mut world, 1.0);
-    assert!((world.reaction(id).force.y - 30.0).abs() < 0.01, "{}", world.reaction(id).force);
+    assert!(
+        (world.reaction(id).force.y - 30.0).abs() < 0.01,
+        "the pin pulls with {}, expected its cap of 30 N",
+        world.reaction(id).force
+    );
     let fall = 1.0 - world.center_of_mass(body).y;
     let expected = 0.5 * (G - 30.0 / 4.0);
     assert!((fall - expected).abs() < 0.03 * expected, "fell {fall} m, expected {expected} m");
@@ -146,13 +150,13 @@ fn an_underdamped_pin_on_a_light_end_does_not_shake() {
     let end = lump(&mut world, Vec3::new(2.75, 1.0, 0.0), 0.01);
     let def = ball(&world, bodies[5], end, Vec3::new(2.7, 1.0, 0.0));
     world.add_joint(&def);
-    // The pin carries 12 kg, and rotates a ten-thousandth of their inertia.
+    // The pin carries the weight of 12 kg, but the moment of inertia at the pin is only a ten-thousandth of theirs.
     pin(&mut world, ground, end, frequency(15.0, 0.3));
     run(&mut world, 0.2);
     for _ in 0..120 {
         world.step();
         let spin = world.velocity(end).angular.length();
-        assert!(spin < 5.0, "{spin} rad/s");
+        assert!(spin < 5.0, "the light end spins at {spin} rad/s");
     }
 }
 
@@ -165,7 +169,7 @@ fn pins_allocate_nothing_once_warm() {
         bodies.iter().map(|&body| pin(&mut world, ground, body, frequency(6.0, 0.5))).collect();
     world.set_kind(bodies[3], BodyKind::Kinematic);
     run(&mut world, 0.5);
-    let motor = world.joint(pins[0]).motor.expect("it has one");
+    let motor = world.joint(pins[0]).motor.expect("the pin has a motor");
     let mut cycle = || {
         for i in 0..60 {
             let target = Transform::from_translation(Vec3::Y * (1.0 + 0.01 * i as f32));
@@ -180,7 +184,7 @@ fn pins_allocate_nothing_once_warm() {
 }
 
 #[test]
-fn energy_rises_by_the_work_of_pins_at_most() {
+fn energy_rises_by_at_most_the_work_of_pins() {
     let mut world = world();
     let ground = ground(&mut world);
     let (bodies, _) = chain(&mut world, 8);
@@ -192,7 +196,7 @@ fn energy_rises_by_the_work_of_pins_at_most() {
         let time = step as f32 / 60.0;
         for (&pin, start) in pins.iter().zip(&starts) {
             let up = Vec3::Y * 0.3 * sinew_math::trig::sin(4.0 * time);
-            let motor = world.joint(pin).motor.expect("it has one");
+            let motor = world.joint(pin).motor.expect("the pin has a motor");
             let target = Transform::new(start.translation + up, start.rotation);
             world.set_motor(pin, Some(Motor { target, ..motor }));
         }
@@ -208,7 +212,7 @@ fn energy_rises_by_the_work_of_pins_at_most() {
         rise += gain;
         work += done.abs();
     }
-    assert!(work > 100.0 && rise < 0.5 * work, "{work} J of work");
+    assert!(work > 100.0 && rise < 0.5 * work, "the pins did {work} J of work, the energy rose by {rise} J");
 }
 
 #[test]
@@ -229,10 +233,13 @@ fn a_body_made_kinematic_and_back_keeps_its_properties() {
         world.step();
     }
     let moved = world.transform(bodies[2]).translation - start.translation;
-    assert!((moved - velocity.linear * 2.0).length() < 1e-4, "{moved}");
-    assert!(joints.iter().all(|&joint| world.joint_gap(joint) < 1e-5), "the others hang on it");
+    assert!((moved - velocity.linear * 2.0).length() < 1e-4, "the kinematic body moved by {moved}");
+    assert!(
+        joints.iter().all(|&joint| world.joint_gap(joint) < 1e-5),
+        "a joint of the chain that hangs on the kinematic body is open"
+    );
     let hash = world.hash();
-    world.load(&mut Reader::new(saved.as_bytes())).expect("it was saved");
+    world.load(&mut Reader::new(saved.as_bytes())).expect("the snapshot must load");
     run(&mut world, 1.0);
     assert_eq!(world.hash(), hash);
     world.set_kind(bodies[2], BodyKind::Dynamic);
@@ -268,7 +275,10 @@ fn kinematic_bodies_report_work_on_joints_and_contacts() {
     }
     let after = world.energy();
     let rise = (after.kinetic - before.kinetic) + (after.potential - before.potential);
-    assert!(rise > 50.0 && (rise - work).abs() < 0.03 * rise, "{rise} J of {work}");
+    assert!(
+        rise > 50.0 && (rise - work).abs() < 0.03 * rise,
+        "the energy rose by {rise} J, work of the kinematic body {work} J"
+    );
 }
 
 #[test]
@@ -308,7 +318,7 @@ fn kinematic_bodies_report_work_on_particles() {
     let expected = 2.0 * 9.81 * 0.5 * 2.0;
     for held in [true, false] {
         let (rise, work) = lift(held);
-        println!("held: {held}, {rise} J of {work}");
+        println!("held: {held}, the energy rose by {rise} J, work {work} J");
         assert!((rise - expected).abs() < 0.01 * expected, "held: {held}, energy rise {rise} J");
         // A body of 2 kg loses 2 v per second to the air.
         let drag = 2.0 * 2.0 * 0.5 * 0.5 * 2.0;

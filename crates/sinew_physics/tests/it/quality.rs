@@ -82,7 +82,7 @@ fn a_lone_body_in_flight_has_the_substeps_of_its_quality() {
         world.add_body(&BodyDef::dynamic(Shape::Sphere { radius: 0.1 }));
         substeps(&mut world)
     });
-    assert_eq!(taken, [4, 4, 8]); // flight costs next to nothing: fast has no less
+    assert_eq!(taken, [4, 4, 8]); // Flight is cheap, so `Fast` uses no fewer substeps.
 }
 
 /// Returns the largest energy error of a swinging rod within ten seconds, as a share of its energy.
@@ -103,9 +103,9 @@ fn more_quality_keeps_more_of_the_energy() {
     let [fast, balanced, exact] = QUALITIES.map(drift);
     assert!(
         exact < 0.6 * balanced && balanced < 0.6 * fast,
-        "gaps: fast {fast}, balanced {balanced}, exact {exact}"
+        "energy errors: fast {fast}, balanced {balanced}, exact {exact}"
     );
-    assert!(fast < 0.05, "{fast}");
+    assert!(fast < 0.05, "relative energy error {fast} with fast quality");
 }
 
 #[test]
@@ -122,7 +122,10 @@ fn a_tower_stands_in_every_quality() {
             .collect();
         (0..300).for_each(|_| world.step());
         let top = world.transform(boxes[9]).translation;
-        assert!((top.y - 4.75).abs() < 2e-3 && top.x.abs() + top.z.abs() < 2e-3, "{quality:?}: {top}");
+        assert!(
+            (top.y - 4.75).abs() < 2e-3 && top.x.abs() + top.z.abs() < 2e-3,
+            "{quality:?}: the top of the tower is at {top}"
+        );
     }
 }
 
@@ -134,7 +137,7 @@ fn quality_is_part_of_a_snapshot() {
     let mut bytes = Writer::new();
     saved.save(&mut bytes);
     let mut other = world(Quality::Balanced);
-    other.load(&mut Reader::new(bytes.as_bytes())).expect("a snapshot");
+    other.load(&mut Reader::new(bytes.as_bytes())).expect("the snapshot must load");
     assert_eq!(other.quality(exact), Some(Quality::Exact));
     assert_eq!(substeps(&mut other), 8 + 2);
     saved.step();

@@ -17,9 +17,10 @@ struct Rolling {
     height: f32,
 }
 
-/// Returns steady rolling. With the axis `e`, the arm `r` from the centre to the lowest point of the rim, and
-/// `ω = Ω y + s e`: the rim does not slip, `v = −ω × r`; the centre moves in a circle, `a = Ω y × v`; the ground's force
-/// `m (a + g y)` turns the angular momentum, `Ω y × L = r × m (a + g y)`. These equations are linear in the spin `s`.
+/// Returns steady rolling about the vertical `y` at the rate `Ω` and spin `s`. With the axis `e`, the arm `r` from the
+/// centre to the lowest point of the rim, and `ω = Ω y + s e`: the rim does not slip, `v = −ω × r`; the centre moves in
+/// a circle, `a = Ω y × v`; the ground's force `m (a + g y)` turns the angular momentum, `Ω y × L = r × m (a + g y)`.
+/// These equations are linear in `s`.
 fn rolling(rate: f32, lean: f32) -> Rolling {
     let (sin, cos) = trig::sin_cos(lean);
     let (a, h) = (RADIUS, HALF_THICKNESS);

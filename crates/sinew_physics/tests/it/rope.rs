@@ -65,7 +65,7 @@ fn a_rope_holds_a_body_and_hangs_from_a_beam() {
     .group;
     let hold =
         |particle, body, point| AttachmentDef { particle, target: AttachmentTarget::Body { body, point } };
-    // Without more damping the weight would swing for minutes.
+    // Without this damping the weight would swing for minutes.
     rope.damp(2.0);
     // Measured with an accuracy of some micrometres.
     rope.sleeping = Sleeping::Off;
@@ -96,7 +96,7 @@ fn a_rope_falls_over_a_box_and_rests_on_it() {
     }
     .build()
     .group;
-    // The ends beside the box touch nothing, and would swing for minutes.
+    // Without damping, the hanging ends would swing for minutes.
     rope.linear_damping = 0.5;
     let id = world.add_particles(&rope);
     run(&mut world, 600);
@@ -135,7 +135,7 @@ fn rope_and_body_keep_their_momentum_together() {
 }
 
 #[test]
-fn a_world_with_particles_restores_equally_on_any_threads() {
+fn restored_and_threaded_worlds_with_particles_match_the_original() {
     let build = || {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -160,7 +160,7 @@ fn a_world_with_particles_restores_equally_on_any_threads() {
     let mut w = sinew_math::Writer::new();
     world.save(&mut w);
     let mut copy = World::new(WorldDef::default());
-    copy.load(&mut sinew_math::Reader::new(w.as_bytes())).expect("own snapshot");
+    copy.load(&mut sinew_math::Reader::new(w.as_bytes())).expect("the snapshot must load");
     let mut threaded = build();
     for _ in 0..60 {
         threaded.step_with(&Threads::new(2), &stage::NoProfiler);
@@ -227,7 +227,7 @@ fn hung_plank(ropes: usize) -> World {
         let ends = [-1.5, 1.5].map(|x| Vec3::X * x * LINK + z);
         let def = RopeDef { from: ends[0], to: ends[1], links: 3, mass: 2.0, stiffness: 4e4, radius: 0.01 };
         let mut group = def.build().group;
-        // Stretched by 400 N, without damping.
+        // A tension of 400 N stretches the ropes; they have no damping.
         for spring in &mut group.springs {
             (spring.rest_length, spring.damping) = (LINK - 0.01, 0.0);
         }
@@ -285,7 +285,10 @@ fn a_stiff_rope_keeps_its_motion() {
             assert!(apart.length() < 1e-3 * velocity, "{what}: the velocity is off by {apart:?}");
             let gain = world.energy().total() - begin;
             assert!(gain.abs() < 1e-3 * begin, "{what}: the energy rose by {gain} J from {begin} J");
-            assert!(world.particles(id).elastic_energy() < 1e-3 * begin, "{what}: stretched");
+            assert!(
+                world.particles(id).elastic_energy() < 1e-3 * begin,
+                "{what}: the elastic energy must stay near 0"
+            );
         }
     }
 }

@@ -71,8 +71,14 @@ fn a_standing_cylinder_stands_still() {
             world.step();
         }
         let end = world.transform(id);
-        assert!((end.translation - start.translation).length() < 0.001, "box {boxed}: {end:?}");
-        assert!(end.rotation.angle_to(start.rotation) < 0.001, "box {boxed}: {end:?}");
+        assert!(
+            (end.translation - start.translation).length() < 0.001,
+            "box {boxed}: the cylinder must stay upright; its pose is {end:?}"
+        );
+        assert!(
+            end.rotation.angle_to(start.rotation) < 0.001,
+            "box {boxed}: the cylinder must stay upright; its pose is {end:?}"
+        );
         assert!(!world.is_awake(id));
     }
 }
@@ -96,9 +102,12 @@ fn a_lying_cylinder_rolls() {
             highest = highest.max((world.transform(id).translation.y - 0.2).abs());
         }
         let v = world.velocity(id);
-        println!("box {boxed}: {v:?}, off by {highest} m, at {}", world.transform(id).translation);
-        assert!((v.linear.x - 1.0).abs() < 0.05, "box {boxed}: {v:?}");
-        assert!((v.angular.z + 5.0).abs() < 0.25, "box {boxed}: {v:?}");
+        println!(
+            "box {boxed}: velocity {v:?}, height off by {highest} m, at {}",
+            world.transform(id).translation
+        );
+        assert!((v.linear.x - 1.0).abs() < 0.05, "box {boxed}: velocity {v:?}, expected 1 m/s and -5 rad/s");
+        assert!((v.angular.z + 5.0).abs() < 0.25, "box {boxed}: velocity {v:?}, expected 1 m/s and -5 rad/s");
         assert!(highest < 0.002, "box {boxed}: the height is off by {highest} m");
     }
 }

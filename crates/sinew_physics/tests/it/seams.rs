@@ -44,19 +44,19 @@ fn block(is_closed: bool) -> Shape {
     let sides = [[0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6], [0, 4, 6, 2], [1, 3, 7, 5]];
     let sides = if is_closed { &sides[..] } else { &sides[..1] };
     let triangles: Vec<[u32; 3]> = sides.iter().flat_map(|&[a, b, c, d]| [[a, c, b], [a, d, c]]).collect();
-    Shape::mesh(&points, &triangles).expect("it is a mesh")
+    Shape::mesh(&points, &triangles).expect("the mesh is valid")
 }
 
 fn field() -> Shape {
     let heights = vec![0.0; 9];
     let def = HeightFieldDef { columns: 3, rows: 3, spacing: [0.5; 2], heights, holes: Vec::new() };
-    Shape::HeightField(HeightField::new(def).expect("it is a field").into())
+    Shape::HeightField(HeightField::new(def).expect("the height field is valid").into())
 }
 
 const SIDE: i32 = 9;
 
 /// Adds ground with its top at height 0.
-fn lay(world: &mut World, tiles: Tiles, material: Material, random: &mut Random) {
+fn add_ground(world: &mut World, tiles: Tiles, material: Material, random: &mut Random) {
     let tile = |shape: Shape| ShapeDef { material, ..ShapeDef::new(shape) };
     let half = Vec3::splat(0.5);
     if tiles == Tiles::One {
@@ -98,8 +98,8 @@ fn lay(world: &mut World, tiles: Tiles, material: Material, random: &mut Random)
     }
 }
 
-/// A body on the ground: its shape, its pose, and how it moves.
-struct Goer {
+/// A body that slides or rolls on the ground. `height` is that of its centre, `spin` its roll rate at 1 m/s.
+struct Slider {
     shape: Shape,
     height: f32,
     turn: Rotation,
@@ -107,11 +107,11 @@ struct Goer {
     friction: f32,
 }
 
-fn goer(kind: usize, way: Vec3, random: &mut Random) -> Goer {
+fn slider(kind: usize, way: Vec3, random: &mut Random) -> Slider {
     let yaw = Rotation::from_axis_angle(Vec3::Y, random.range(0.0, core::f32::consts::TAU));
     let half = Vec3::new(0.2, 0.15, 0.25);
     let lying = Rotation::from_arc(Vec3::Y, Vec3::Y.cross(way).normalize());
-    let rolls = |shape: Shape, radius: f32, turn: Rotation| Goer {
+    let rolls = |shape: Shape, radius: f32, turn: Rotation| Slider {
         shape,
         height: radius,
         turn,
@@ -119,7 +119,7 @@ fn goer(kind: usize, way: Vec3, random: &mut Random) -> Goer {
         friction: 0.6,
     };
     let slides =
-        |shape: Shape, height: f32, friction: f32| Goer { shape, height, turn: yaw, spin: 0.0, friction };
+        |shape: Shape, height: f32, friction: f32| Slider { shape, height, turn: yaw, spin: 0.0, friction };
     match kind {
         0 => rolls(Shape::sphere(0.3), 0.3, Rotation::IDENTITY),
         1 => rolls(Shape::sphere(0.05), 0.05, Rotation::IDENTITY),
@@ -127,12 +127,12 @@ fn goer(kind: usize, way: Vec3, random: &mut Random) -> Goer {
         3 => slides(Shape::cuboid(half), half.y, 0.1),
         4 => slides(box_hull(half), half.y, 0.0),
         5 => rolls(Shape::capsule(0.3, 0.1), 0.1, lying),
-        6 => Goer { spin: 0.0, friction: 0.0, ..rolls(Shape::capsule(0.3, 0.1), 0.1, lying) },
+        6 => Slider { spin: 0.0, friction: 0.0, ..rolls(Shape::capsule(0.3, 0.1), 0.1, lying) },
         _ => slides(Shape::cylinder(0.1, 0.2), 0.1, 0.0),
     }
 }
 
-/// Result of a run: horizontal speed at the end, height at the end and largest height, both relative to the start.
+/// Result of a run: final speed along the initial direction; final and largest height, both relative to the start.
 #[derive(Debug)]
 struct Way {
     speed: f32,
@@ -140,23 +140,23 @@ struct Way {
     apex: f32,
 }
 
-fn went(tiles: Tiles, kind: usize, speed: f32, seed: u64) -> Way {
+fn run(tiles: Tiles, kind: usize, speed: f32, seed: u64) -> Way {
     let mut random = Random::new(seed);
     let heading = random.range(0.0, core::f32::consts::TAU);
     let way = Vec3::new(trig::cos(heading), 0.0, trig::sin(heading));
-    let goer = goer(kind, way, &mut random);
-    let start = Vec3::new(random.range(-1.0, 1.0), goer.height, random.range(-1.0, 1.0));
+    let slider = slider(kind, way, &mut random);
+    let start = Vec3::new(random.range(-1.0, 1.0), slider.height, random.range(-1.0, 1.0));
     let mut world = World::new(WorldDef::default());
-    let material = Material { friction: goer.friction, ..Material::DEFAULT };
-    lay(&mut world, tiles, material, &mut random);
-    let shape = ShapeDef { material, ..ShapeDef::new(goer.shape) };
+    let material = Material { friction: slider.friction, ..Material::DEFAULT };
+    add_ground(&mut world, tiles, material, &mut random);
+    let shape = ShapeDef { material, ..ShapeDef::new(slider.shape) };
     let body = world.add_body(&BodyDef {
         linear_velocity: way * speed,
-        angular_velocity: Vec3::Y.cross(way) * (speed * goer.spin),
-        ..BodyDef::dynamic(shape).at(start).turned(goer.turn)
+        angular_velocity: Vec3::Y.cross(way) * (speed * slider.spin),
+        ..BodyDef::dynamic(shape).at(start).turned(slider.turn)
     });
     let mut apex = 0.0;
-    let height = |world: &World| world.center_of_mass(body).y - goer.height;
+    let height = |world: &World| world.center_of_mass(body).y - slider.height;
     for _ in 0..sinew_math::min(6.0 / speed * 60.0, 240.0) as usize {
         world.step();
         apex = max(apex, height(&world));
@@ -171,8 +171,10 @@ fn sliding_over_seams_matches_one_box() {
         for speed in [0.5, 1.0, 3.0, 6.0, 10.0] {
             for tiles in ALL {
                 seed += 1;
-                let (one, way) = (went(Tiles::One, kind, speed, seed), went(tiles, kind, speed, seed));
-                let case = format!("{tiles:?}, kind {kind} at {speed} m/s, seed {seed}: {way:?} for {one:?}");
+                let (one, way) = (run(Tiles::One, kind, speed, seed), run(tiles, kind, speed, seed));
+                let case = format!(
+                    "{tiles:?}, kind {kind} at {speed} m/s, seed {seed}: {way:?}, on one box {one:?}"
+                );
                 assert!((way.speed - one.speed).abs() < 0.01 * speed, "{case}");
                 assert!((way.height - one.height).abs() < 1e-3 && way.apex - one.apex < 1e-3, "{case}");
             }
@@ -180,7 +182,7 @@ fn sliding_over_seams_matches_one_box() {
     }
 }
 
-/// A step of 5 mm and a gap wider than the slop stop bodies, as do walls on the ground and beside it.
+/// A step of 5 mm stops bodies, and so do walls on the ground and beside it.
 #[test]
 fn real_edges_stop_bodies() {
     for (name, at, half) in [

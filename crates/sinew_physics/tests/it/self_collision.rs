@@ -47,7 +47,7 @@ fn pleated(thickness: f32) -> Cloth {
     cloth
 }
 
-/// Returns how often threads pierce triangles of the cloth with which they share no corner.
+/// Counts the pairs of a spring and a triangle of the cloth that share no corner and intersect.
 fn crossings(positions: &[Vec3]) -> usize {
     let wide = COLUMNS as usize + 1;
     let mut triangles = Vec::new();
@@ -92,8 +92,8 @@ fn folded(load: f32, thickness: f32) -> (World, GroupId) {
     (world, group)
 }
 
-/// Returns the crossings in `steps` steps, counted in every tenth; the energy gain, J; and the height of the last body,
-/// metres.
+/// Takes `steps` steps. Returns the number of crossings, counted in every tenth step; the energy gain, J; and the
+/// height of the last body, metres.
 fn fall(load: f32, thickness: f32, steps: usize) -> (usize, f32, f32) {
     let (mut world, group) = folded(load, thickness);
     let first = world.energy().total();
@@ -105,7 +105,7 @@ fn fall(load: f32, thickness: f32, steps: usize) -> (usize, f32, f32) {
             seen += crossings(world.particles(group).positions());
         }
     }
-    let body = world.body_ids().last().expect("there is a floor");
+    let body = world.body_ids().last().expect("the world has a floor");
     (seen, gain, world.center_of_mass(body).y)
 }
 
@@ -115,11 +115,11 @@ fn folds_do_not_intersect() {
     for load in [0.1, 0.2] {
         let (seen, gain, height) = fall(load, THICKNESS, 240);
         println!("{load} kg: {seen} crossings, {gain} J gained, box at {height} m");
-        assert_eq!(seen, 0, "{load} kg");
-        assert!(gain < 0.002, "{load} kg: {gain} J");
-        assert!(height > 0.03 + 0.01 + 4.0 * THICKNESS, "{load} kg: {height} m");
+        assert_eq!(seen, 0, "{load} kg: threads of the cloth cross its triangles");
+        assert!(gain < 0.002, "{load} kg: the energy rose by {gain} J");
+        assert!(height > 0.03 + 0.01 + 4.0 * THICKNESS, "{load} kg: the box is at height {height} m");
     }
-    // Without thickness the layers do cross, so the count can detect crossings.
+    // Without thickness the layers cross, which shows that the count detects crossings.
     let (seen, ..) = fall(0.2, 0.0, 240);
     assert!(seen > 50, "only {seen} crossings without thickness");
 }
@@ -131,11 +131,11 @@ fn folds_come_to_rest() {
     let group = world.particles(group);
     assert!(
         !group.is_awake(),
-        "{} m/s",
+        "the fastest particle moves at {} m/s",
         group.velocities().iter().fold(0.0, |most, v| max(most, v.length()))
     );
     let top = group.positions().iter().fold(0.0, |most, p| max(most, p.y));
-    assert!(top > 0.01 + 4.0 * THICKNESS, "{top} m");
+    assert!(top > 0.01 + 4.0 * THICKNESS, "the top of the folds is at {top} m");
 }
 
 /// Returns two particles with these positions, velocities and masses, which keep 0.1 m apart, without gravity.
@@ -157,14 +157,14 @@ fn two_colliding_particles_move_on_together() {
     }
     // Velocity after an inelastic impact: (1 − 3) / 4.
     for velocity in group.velocities() {
-        assert!((velocity.x + 0.5).abs() < 1e-5, "{velocity:?}");
+        assert!((velocity.x + 0.5).abs() < 1e-5, "velocity after the impact {velocity:?}");
     }
     let apart = (group.positions()[1] - group.positions()[0]).length();
-    assert!((apart - 0.1).abs() < 1e-5, "{apart} m");
+    assert!((apart - 0.1).abs() < 1e-5, "the particles are {apart} m apart");
 }
 
 #[test]
-fn spring_neighbours_may_be_near() {
+fn spring_neighbours_may_be_closer_than_the_thickness() {
     for (joined, distance) in [(true, 0.05), (false, 0.1)] {
         let mut group = pair([(Vec3::ZERO, Vec3::ZERO, 1.0), (Vec3::X * 0.05, Vec3::ZERO, 1.0)], joined);
         for _ in 0..1000 {
@@ -172,13 +172,13 @@ fn spring_neighbours_may_be_near() {
         }
         let apart = (group.positions()[1] - group.positions()[0]).length();
         assert!((apart - distance).abs() < 1e-4, "joined: {joined}, distance {apart} m");
-        // Overlapping particles that separate do not fly apart.
+        // Particles that start closer than the thickness must stop there, not fly apart.
         assert!(group.velocities().iter().all(|v| v.length() < 1e-4), "{:?}", group.velocities());
     }
 }
 
 #[test]
-fn self_collision_restores_equally_on_any_threads() {
+fn restored_and_threaded_self_collision_matches_the_original() {
     let [mut one, mut two] = [folded(0.1, THICKNESS).0, folded(0.1, THICKNESS).0];
     let threads = Threads::new(2);
     for _ in 0..40 {
@@ -186,17 +186,17 @@ fn self_collision_restores_equally_on_any_threads() {
         two.step_with(&threads, &sinew_physics::stage::NoProfiler);
     }
     assert_eq!(one.hash(), two.hash());
-    let mut reborn = World::new(WorldDef::default());
+    let mut reloaded = World::new(WorldDef::default());
     let (mut state, mut shapes) = (Writer::new(), Writer::new());
     one.save(&mut state);
     one.save_shapes(&mut shapes);
-    reborn.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("they were saved");
-    reborn.load(&mut Reader::new(state.as_bytes())).expect("it was saved");
-    let group = reborn.group_ids().next().expect("it has the cloth");
-    assert_eq!(reborn.particles(group).thickness(), THICKNESS);
+    reloaded.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("the saved shape library must load");
+    reloaded.load(&mut Reader::new(state.as_bytes())).expect("the snapshot must load");
+    let group = reloaded.group_ids().next().expect("the world has the cloth");
+    assert_eq!(reloaded.particles(group).thickness(), THICKNESS);
     for _ in 0..40 {
         one.step();
-        reborn.step();
+        reloaded.step();
     }
-    assert_eq!(one.hash(), reborn.hash());
+    assert_eq!(one.hash(), reloaded.hash());
 }

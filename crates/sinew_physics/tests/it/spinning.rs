@@ -1,4 +1,4 @@
-//! Fast spinning rods hit balls that fly through their disc, and do not hit balls at positions that the rods have left.
+//! Fast spinning rods hit the balls that fly into them, and no balls at positions that the rods have already left.
 
 use sinew_math::{Random, Rotation, Transform, Vec3, clamp};
 use sinew_physics::*;
@@ -10,7 +10,8 @@ const BALL: f32 = 0.06;
 const BALLS: u64 = 80;
 const HEIGHT: f32 = 1.0;
 
-/// Returns the smallest distance of a ball that flies freely from the rod, metres; negative for an overlap.
+/// Returns the smallest distance between the surfaces of the rod and of a ball that flies freely, metres; negative for
+/// an overlap.
 fn nearest(start: Vec3, speed: f32, spin: f32, phase: f32, half: f32) -> f32 {
     let moments = 20_000;
     let distance = |moment: i32| {
@@ -22,7 +23,8 @@ fn nearest(start: Vec3, speed: f32, spin: f32, phase: f32, half: f32) -> f32 {
     (0..moments).map(distance).fold(f32::INFINITY, sinew_math::min)
 }
 
-/// Returns the number of balls that a spinning rod misses, and of those that it hits from a distance.
+/// Returns `[missed, ghosts]`: the number of balls that a spinning rod meets but does not hit, and the number of balls
+/// that change their velocity although the rod never reaches them.
 fn misses_and_ghosts(kind: BodyKind, spin: f32, length: f32) -> [u32; 2] {
     let half = 0.5 * length - ROD;
     let (mut missed, mut ghosts) = (0, 0);
@@ -58,9 +60,10 @@ fn rods_hit_balls_that_fly_through_their_discs() {
     for kind in [BodyKind::Kinematic, BodyKind::Dynamic] {
         for (spin, length) in [(30.0, 1.0), (60.0, 1.0), (120.0, 1.0), (200.0, 1.0), (120.0, 0.5)] {
             let [missed, ghosts] = misses_and_ghosts(kind, spin, length);
-            let what =
-                format!("{kind:?}, {length} m at {spin} rad/s: {missed} missed, {ghosts} struck from afar");
-            assert!(missed == 0 && ghosts <= 5, "{what} of {BALLS}");
+            let what = format!(
+                "{kind:?}, {length} m at {spin} rad/s: {missed} missed, {ghosts} hit without contact"
+            );
+            assert!(missed == 0 && ghosts <= 5, "of {BALLS} balls: {what}");
         }
     }
 }

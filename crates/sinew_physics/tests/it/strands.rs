@@ -1,4 +1,5 @@
-//! Chains of plain ball joints, up to eight together with SIMD: they move like single chains, and like islands.
+//! Chains of plain ball joints (strands), up to eight of which are solved together with SIMD. They move like single
+//! chains, and like chains solved as islands.
 
 use crate::build::{ball, capsule_body};
 use sinew_math::{Random, ReadError, Reader, Transform, Vec3, Writer};
@@ -6,7 +7,7 @@ use sinew_physics::*;
 
 const LENGTH: f32 = 0.3;
 
-/// A swinging chain of links of 1 to 50 kg, one of a crowd in which no two meet.
+/// A swinging chain of links of 1 to 50 kg. Chains of different indices never meet.
 struct Chain {
     bodies: Vec<BodyId>,
     joints: Vec<JointId>,
@@ -15,7 +16,7 @@ struct Chain {
 impl Chain {
     fn new(world: &mut World, i: u32, links: usize, is_held: bool) -> Self {
         let mut random = Random::new(u64::from(i) + 1);
-        // Near the origin, because at 40 m the rounding of positions is a millimetre per second.
+        // Near the origin, because 40 m away the rounding of positions is a speed error of 1 mm/s.
         let origin = Vec3::X * (4.0 * i as f32);
         let mut last = is_held.then(|| {
             world.add_body(&BodyDef { kind: BodyKind::Static, position: origin, ..BodyDef::default() })
@@ -105,7 +106,7 @@ fn strands_match_islands() {
                 assert!(off < 1e-4, "chain {i}, step {step}: pose {pose:?}, expected {expected:?}");
                 assert!(
                     pose.rotation.dot(expected.rotation).abs() > 1.0 - 1e-6,
-                    "chain {i}, step {step}: other rotation"
+                    "chain {i}, step {step}: the rotations differ"
                 );
                 assert!(
                     (v.linear - w.linear).length() < 5e-3,
@@ -141,7 +142,7 @@ fn objects_change_only_their_bodies() {
 }
 
 #[test]
-fn momentum_of_a_free_strand_stays() {
+fn free_strand_keeps_its_momentum() {
     for links in [6, 24, 29] {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
         let chain = Chain::new(&mut world, 0, links, false);
@@ -158,7 +159,7 @@ fn momentum_of_a_free_strand_stays() {
             "{links} links: lost momentum {lost} of {before}"
         );
         let gap = chain.joints.iter().map(|&joint| world.joint_gap(joint)).fold(0.0, f32::max);
-        assert!(gap < 2e-4, "{links}: {gap} m");
+        assert!(gap < 2e-4, "{links} links: joint gap {gap} m");
     }
 }
 
@@ -186,7 +187,7 @@ fn joints_of_a_long_rope_carry_the_weight_below() {
                 (force - below).abs() < 2e-4 * below,
                 "{links} links: joint force {force} N, weight below {below} N"
             );
-            assert!(world.joint_gap(*joint) < 1e-5, "{links} links");
+            assert!(world.joint_gap(*joint) < 1e-5, "{links} links: a joint of the rope is open");
         }
     }
 }
@@ -236,8 +237,12 @@ fn a_joint_that_is_open_closes_as_in_an_island() {
     island.add_object(Box::new(Touch(b.bodies.clone())));
     run(&mut strand, 1);
     run(&mut island, 1);
-    // The island solver takes over with exactly the same bits.
+    // An open joint is solved by the island solver, so the bits are equal.
     assert_eq!(a.state(&strand), b.state(&island));
     run(&mut strand, 30);
-    assert!(strand.joint_gap(a.joints[2]) < 1e-5, "{}", strand.joint_gap(a.joints[2]));
+    assert!(
+        strand.joint_gap(a.joints[2]) < 1e-5,
+        "the joint must close; gap {} m",
+        strand.joint_gap(a.joints[2])
+    );
 }

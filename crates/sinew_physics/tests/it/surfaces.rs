@@ -28,17 +28,17 @@ fn fixed(def: BodyDef) -> BodyDef {
 }
 
 fn only_shape(world: &World, body: BodyId) -> ShapeId {
-    world.shape_ids(body).next().expect("it has a shape")
+    world.shape_ids(body).next().expect("the body has a shape")
 }
 
 fn assert_near(found: f32, expected: f32, share: f32, what: &str) {
     assert!((found / expected - 1.0).abs() < share, "{what}: {found}, expected {expected}");
 }
 
-fn reloaded(world: &World, into: &mut World) {
+fn reload(world: &World, into: &mut World) {
     let mut w = Writer::new();
     world.save(&mut w);
-    into.load(&mut Reader::new(w.as_bytes())).expect("it is a snapshot");
+    into.load(&mut Reader::new(w.as_bytes())).expect("the snapshot must load");
 }
 
 /// Returns a block at rest on a slope, both of one material, and the direction down the slope.
@@ -56,7 +56,7 @@ fn on_slope(angle: f32, material: Material) -> (World, BodyId, Vec3) {
 }
 
 #[test]
-fn a_block_holds_to_the_static_angle_and_slides_with_the_other_coefficient() {
+fn block_sticks_up_to_the_static_angle_and_slides_with_sliding_friction() {
     let material = Material { friction: 0.3, static_friction: Some(0.6), ..Material::DEFAULT };
     let angle = trig::atan2(0.6, 1.0);
     let half_degree = 0.5f32.to_radians();
@@ -77,7 +77,7 @@ fn a_block_holds_to_the_static_angle_and_slides_with_the_other_coefficient() {
     run(&mut world, 60);
     let (sin, cos) = trig::sin_cos(angle + half_degree);
     let gained = world.velocity(block).linear.dot(down) - before;
-    assert_near(gained, G * (sin - 0.3 * cos) * 60.0 * world.def().dt(), 0.005, "m/s in a second");
+    assert_near(gained, G * (sin - 0.3 * cos) * 60.0 * world.def().dt(), 0.005, "gain of speed in a second");
 }
 
 #[test]
@@ -90,12 +90,12 @@ fn sliding_box_brakes_by_sliding_friction_and_then_sticks() {
     run(&mut world, 120);
     let h = world.def().dt() / 4.0;
     let expected = 0.5 * 3.0 * (3.0 / (0.2 * G) - h);
-    assert_near(world.transform(block).translation.x - start, expected, 0.01, "way to rest");
+    assert_near(world.transform(block).translation.x - start, expected, 0.01, "distance until the box stops");
     assert!(world.velocity(block).linear.length() < 1e-3);
 }
 
 #[test]
-fn a_belt_carries_a_box_to_its_speed() {
+fn belt_accelerates_a_box_to_its_own_speed() {
     let (speed, friction) = (2.0, 0.4);
     let belt = Material { friction, surface_velocity: Vec3::X * speed, ..Material::DEFAULT };
     for kind in [BodyKind::Static, BodyKind::Kinematic] {
@@ -111,16 +111,24 @@ fn a_belt_carries_a_box_to_its_speed() {
         let half = (0.5 * speed / (friction * G) / world.def().dt()) as usize;
         run(&mut world, half);
         let expected = friction * G * half as f32 * world.def().dt();
-        assert_near(world.velocity(load).linear.dot(along), expected, 0.02, "half way");
+        assert_near(
+            world.velocity(load).linear.dot(along),
+            expected,
+            0.02,
+            "speed while the belt accelerates the box",
+        );
         run(&mut world, 2 * half);
         let v = world.velocity(load).linear;
-        assert!((v - along * speed).length() < 0.01, "{v:?} on a belt");
+        assert!(
+            (v - along * speed).length() < 0.01,
+            "velocity on the belt {v:?}, expected {speed} m/s along it"
+        );
         assert!(world.is_awake(load), "a conveyed body must not sleep");
     }
 }
 
 #[test]
-fn a_belt_acts_at_once_when_it_stops_and_starts() {
+fn belt_that_starts_or_stops_acts_immediately() {
     let mut world = World::new(WorldDef::default());
     let belt = world.add_body(&fixed(box_body(Vec3::new(20.0, 0.5, 20.0), Vec3::Y * -0.5)));
     let load = world.add_body(&box_body(Vec3::splat(0.2), Vec3::Y * 0.2));
@@ -131,10 +139,10 @@ fn a_belt_acts_at_once_when_it_stops_and_starts() {
     world.set_material(shape, moving);
     assert_eq!(world.material(shape), moving);
     run(&mut world, 60);
-    assert_near(world.velocity(load).linear.z, 1.0, 0.01, "carried");
+    assert_near(world.velocity(load).linear.z, 1.0, 0.01, "speed of what the surface carries");
     world.set_material(shape, Material::DEFAULT);
     run(&mut world, 120);
-    assert!(!world.is_awake(load), "it lies still again");
+    assert!(!world.is_awake(load), "the box must sleep again on the stopped belt");
 }
 
 #[test]
@@ -149,7 +157,7 @@ fn a_turntable_turns_a_body_on_its_axis() {
 }
 
 #[test]
-fn surfaces_carry_particles_and_ghosts_let_them_pass() {
+fn belts_carry_particles_and_ghosts_let_them_pass() {
     let mut world = World::new(WorldDef::default());
     let belt = Material { friction: 0.5, surface_velocity: Vec3::X * 1.5, ..Material::DEFAULT };
     world.add_body(&fixed(made_of(box_body(Vec3::new(20.0, 0.5, 20.0), Vec3::Y * -0.5), belt)));
@@ -168,7 +176,7 @@ fn surfaces_carry_particles_and_ghosts_let_them_pass() {
     run(&mut world, 150);
     let particles = world.particles(group);
     assert!((particles.positions()[0].y - 0.02).abs() < 1e-3, "{:?}", particles.positions()[0]);
-    assert_near(particles.velocities()[0].x, 1.5, 0.01, "carried");
+    assert_near(particles.velocities()[0].x, 1.5, 0.01, "speed of what the surface carries");
 }
 
 #[test]
@@ -183,7 +191,7 @@ fn rolling_resistance_brakes_a_ball() {
     run(&mut world, 30);
     let before = world.velocity(ball).linear.x;
     run(&mut world, 60);
-    // f = m a + …: a rolling ball acts with 7/5 of its mass; the torque ρ m g acts at its radius.
+    // A ball that rolls without slipping has the inertia of 7/5 of its mass; the torque ρ m g resists at its radius.
     let expected = rolling * G / (1.4 * radius);
     let lost = (before - world.velocity(ball).linear.x) / (60.0 * world.def().dt());
     assert_near(lost, expected, 0.01, "m/s² against rolling");
@@ -196,7 +204,7 @@ fn platform(world: &mut World, top: f32) -> BodyId {
 }
 
 #[test]
-fn a_one_way_platform_passes_upward_and_holds_downward() {
+fn one_way_platform_lets_bodies_rise_through_it_and_carries_them() {
     for (speed, radius) in [(6.0, 0.2), (8.0, 0.02), (30.0, 0.1)] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -209,7 +217,7 @@ fn a_one_way_platform_passes_upward_and_holds_downward() {
             world.step();
             highest = sinew_math::max(highest, world.transform(ball).translation.y);
         }
-        assert_near(highest, radius + speed * speed / (2.0 * G), 0.02, "nothing holds it up on its way");
+        assert_near(highest, radius + speed * speed / (2.0 * G), 0.02, "apex of the ball above the platform");
         let y = world.transform(ball).translation.y;
         assert!((y - 1.0 - radius).abs() < 3e-3, "the body must lie on top; its height is {y} m");
         assert!(!world.is_awake(ball));
@@ -217,14 +225,14 @@ fn a_one_way_platform_passes_upward_and_holds_downward() {
 }
 
 #[test]
-fn a_passing_body_keeps_passing_after_a_restore() {
+fn body_inside_a_one_way_platform_keeps_passing_after_a_restore() {
     // The apex is inside the platform: the ball must fall out again, not be placed on top.
     let start = || {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
         platform(&mut world, 1.0);
         let mut ball = sphere_body(0.1, Vec3::Y * 0.1);
-        ball.linear_velocity = Vec3::Y * trig_speed(0.85);
+        ball.linear_velocity = Vec3::Y * launch_speed(0.85);
         let ball = world.add_body(&ball);
         (world, ball)
     };
@@ -236,19 +244,19 @@ fn a_passing_body_keeps_passing_after_a_restore() {
         assert_eq!(world.events(), other.events(), "step {step}");
         assert_eq!(world.hash(), other.hash(), "step {step}");
         let mut fresh = World::new(WorldDef::default());
-        reloaded(&other, &mut fresh);
+        reload(&other, &mut fresh);
         other = fresh;
     }
     assert!((world.transform(ball).translation.y - 0.1).abs() < 3e-3);
 }
 
-/// Returns the speed that is needed to reach a height, m/s.
-fn trig_speed(height: f32) -> f32 {
+/// Returns the initial speed with which a body rises to a height, m/s.
+fn launch_speed(height: f32) -> f32 {
     (2.0 * G * height).sqrt()
 }
 
 #[test]
-fn a_ghost_is_reported_without_pushing() {
+fn ghost_contact_is_reported_without_a_push() {
     let mut world = World::new(WorldDef::default());
     let ghost = fixed(box_body(Vec3::splat(0.5), Vec3::ZERO));
     let ghost = world.add_body(&under_rule(ghost, ContactRule::Ghost));
@@ -263,7 +271,12 @@ fn a_ghost_is_reported_without_pushing() {
     }
     assert_eq!((begun, ended), (1, 1));
     let (t, h) = (60.0 * world.def().dt(), world.def().dt() / 4.0);
-    assert_near(1.0 - world.transform(ball).translation.y, 0.5 * G * t * (t + h), 1e-3, "it falls freely");
+    assert_near(
+        1.0 - world.transform(ball).translation.y,
+        0.5 * G * t * (t + h),
+        1e-3,
+        "distance of free fall",
+    );
 }
 
 /// Modifier that lets bodies with user data 7 pass, and throws those with 8 up at 5 m/s.
@@ -287,7 +300,7 @@ fn with_bouncer() -> (World, [BodyId; 3]) {
 }
 
 #[test]
-fn a_modifier_drops_contacts_and_throws() {
+fn modifier_drops_contacts_and_throws_bodies() {
     let (mut world, [dropped, thrown, held]) = with_bouncer();
     let mut highest = 0.0;
     for _ in 0..40 {
@@ -295,7 +308,7 @@ fn a_modifier_drops_contacts_and_throws() {
         highest = sinew_math::max(highest, world.transform(thrown).translation.y);
     }
     assert!(world.transform(dropped).translation.y < -1.0);
-    assert_near(highest - 0.1, 25.0 / (2.0 * G), 0.03, "height of the throw");
+    assert_near(highest - 0.1, 25.0 / (2.0 * G), 0.03, "rise of the thrown body");
     assert!((world.transform(held).translation.y - 0.1).abs() < 2e-3);
     let mut w = Writer::new();
     world.save(&mut w);
@@ -305,7 +318,7 @@ fn a_modifier_drops_contacts_and_throws() {
     assert!(format!("{error:?}").contains("modifier"), "{error:?}");
     assert_eq!(other.hash(), before);
     other.register_modifier(3, bouncer);
-    other.load(&mut Reader::new(w.as_bytes())).expect("it is registered");
+    other.load(&mut Reader::new(w.as_bytes())).expect("the snapshot must load");
     run(&mut world, 60);
     run(&mut other, 60);
     assert_eq!(world.hash(), other.hash());
@@ -317,7 +330,7 @@ fn even(a: &PairSide, b: &PairSide) -> bool {
 }
 
 #[test]
-fn a_pair_function_disables_pairs_and_is_state() {
+fn pair_function_disables_pairs_and_is_part_of_snapshots() {
     let mut world = World::new(WorldDef::default());
     world.register_pair_function(1, even);
     let ground = world.add_body(&fixed(box_body(Vec3::new(5.0, 0.5, 5.0), Vec3::Y * -0.5)));
@@ -338,7 +351,7 @@ fn a_pair_function_disables_pairs_and_is_state() {
     let mut other = World::new(WorldDef::default());
     assert!(other.load(&mut Reader::new(w.as_bytes())).is_err());
     other.register_pair_function(1, even);
-    other.load(&mut Reader::new(w.as_bytes())).expect("it is registered");
+    other.load(&mut Reader::new(w.as_bytes())).expect("the snapshot must load");
     assert_eq!(other.pair_function(), Some(1));
 }
 
@@ -354,7 +367,10 @@ fn disabling_and_enabling_a_pair_wakes_it() {
     world.step();
     assert_eq!(world.events().end, [(below, above)]);
     run(&mut world, 60);
-    assert!((world.transform(above).translation.y - 0.4).abs() < 3e-3, "it fell to the floor");
+    assert!(
+        (world.transform(above).translation.y - 0.4).abs() < 3e-3,
+        "the upper body must fall to the floor"
+    );
     assert!(world.contacts_of(above).all(|contact| contact.a.body == ground));
     world.enable_pair(above, below);
     world.step();
@@ -379,7 +395,7 @@ fn filter_rule_and_sensing_changes_act_at_once_and_wake() {
     world.set_filter(shape, Filter { mask: 0, ..Filter::default() });
     world.step();
     assert_eq!((&world.events().end[..], &world.events().shapes_end[..]), (&[pair][..], &[ids][..]));
-    assert!(world.velocity(ball).linear.y < -0.1, "it falls");
+    assert!(world.velocity(ball).linear.y < -0.1, "the ball must fall");
     world.set_filter(shape, Filter::default());
     world.set_contact_rule(shape, ContactRule::Ghost);
     run(&mut world, 5);
@@ -396,13 +412,13 @@ fn a_hit_reports_speed_and_impulse_once() {
             let material = Material { restitution, tag: 7, ..Material::DEFAULT };
             let ball = world.add_body(&made_of(sphere_body(0.1, Vec3::Y * (0.1 + height)), material));
             let mut hits = Vec::new();
-            let steps = (trig_speed(height) / G / world.def().dt()) as usize + 4;
+            let steps = (launch_speed(height) / G / world.def().dt()) as usize + 4;
             for _ in 0..steps {
                 world.step();
                 hits.extend_from_slice(&world.events().hits);
             }
-            let [hit] = hits[..] else { panic!("one hit from {height} m: {hits:?}") };
-            let (mass, speed) = (world.mass(ball).mass, trig_speed(height));
+            let [hit] = hits[..] else { panic!("a ball from {height} m must report one hit: {hits:?}") };
+            let (mass, speed) = (world.mass(ball).mass, launch_speed(height));
             assert_eq!((hit.a.body, hit.b.body, hit.normal), (ground, ball, Vec3::Y));
             assert_eq!(hit.materials[1].tag, 7);
             // The approach speed is that at the start of the step, so up to one step of falling is missing.
@@ -429,7 +445,11 @@ fn a_pile_at_rest_reports_no_hit() {
     }
     for _ in 0..300 {
         world.step();
-        assert!(world.events().hits.is_empty(), "{:?}", world.events().hits);
+        assert!(
+            world.events().hits.is_empty(),
+            "a pile at rest must report no hit: {:?}",
+            world.events().hits
+        );
     }
 }
 
@@ -440,7 +460,7 @@ fn contacts_report_their_load() {
     run(&mut world, 120);
     let weight = world.mass(block).mass * G * world.def().dt();
     let contacts: Vec<BodyContact> = world.contacts_of(block).collect();
-    let [contact] = contacts[..] else { panic!("{contacts:?}") };
+    let [contact] = contacts[..] else { panic!("the block must have one contact: {contacts:?}") };
     assert_eq!((contact.effect, contact.points().len()), (Effect::Push, 4));
     assert_near(contact.impulse(), weight * trig::cos(angle), 0.01, "N·s along the normal");
     assert_near(contact.friction.dot(-down), weight * trig::sin(angle), 0.01, "N·s of friction");
@@ -468,7 +488,7 @@ fn sensors_report_static_moving_sleeping_and_removed_bodies() {
         world.step();
         world.events().sensor_begin == [(gate, door)]
     });
-    assert!((26..30).contains(&seen.expect("it comes to the gate")), "{seen:?}");
+    assert!((26..30).contains(&seen.expect("the body must reach the gate")), "{seen:?}");
     run(&mut world, 10);
     world.set_velocity(door, Velocity::default());
     for _ in 0..90 {

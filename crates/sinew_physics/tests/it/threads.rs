@@ -1,4 +1,4 @@
-//! The pool of `Threads` makes every call of any batch, and ends its threads.
+//! The pool of `Threads` makes every call of any batch, and joins its threads when it is dropped.
 
 use core::sync::atomic::{AtomicUsize, Ordering};
 use sinew_math::Random;
@@ -26,7 +26,7 @@ fn each_batch_makes_every_call() {
     }
 }
 
-/// Batches of all sizes, immediately and after pauses in which the workers fall asleep.
+/// Runs batches of all sizes, immediately after each other and after pauses in which the workers fall asleep.
 #[test]
 fn random_batches_lose_no_call() {
     let threads = Threads::new(4);
@@ -37,9 +37,9 @@ fn random_batches_lose_no_call() {
         let next = AtomicUsize::new(0);
         threads.run(count, &|| {
             let piece = next.fetch_add(1, Ordering::Relaxed);
-            *sum.lock().expect("no call panics") += piece;
+            *sum.lock().expect("no call may panic") += piece;
         });
-        assert_eq!(*sum.lock().expect("no call panics"), count * count.saturating_sub(1) / 2);
+        assert_eq!(*sum.lock().expect("no call may panic"), count * count.saturating_sub(1) / 2);
         if round % 1_000 == 0 {
             thread::sleep(Duration::from_millis(2));
         }
@@ -47,7 +47,7 @@ fn random_batches_lose_no_call() {
 }
 
 #[test]
-fn work_is_shared() {
+fn calls_of_a_batch_run_at_the_same_time() {
     let threads = Threads::new(2);
     let met = AtomicUsize::new(0);
     // Neither of the two calls returns before both have begun.
@@ -59,9 +59,9 @@ fn work_is_shared() {
     });
 }
 
-/// The caller runs out of calls and sleeps until the last call has returned.
+/// When no calls are left, the caller sleeps until the last call has returned.
 #[test]
-fn long_calls_are_waited_for() {
+fn batch_returns_after_its_longest_call() {
     let threads = Threads::new(3);
     for _ in 0..20 {
         let (begun, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
@@ -76,7 +76,7 @@ fn long_calls_are_waited_for() {
 }
 
 #[test]
-fn a_panic_reaches_the_caller_and_the_pool_goes_on() {
+fn panic_reaches_the_caller_and_the_pool_stays_usable() {
     let threads = Threads::new(3);
     let mut random = Random::new(9);
     for _ in 0..300 {
@@ -86,13 +86,14 @@ fn a_panic_reaches_the_caller_and_the_pool_goes_on() {
         let batch = || {
             threads.run(count, &|| {
                 let piece = next.fetch_add(1, Ordering::Relaxed);
-                // Panics without the message of the hook.
+                // `resume_unwind` panics without calling the hook, which would print a message.
                 if piece == bad {
                     std::panic::resume_unwind(Box::new(piece));
                 }
             });
         };
-        let payload = catch_unwind(AssertUnwindSafe(batch)).expect_err("a call panicked");
+        let payload =
+            catch_unwind(AssertUnwindSafe(batch)).expect_err("the panic of a call must reach the caller");
         assert_eq!(payload.downcast_ref::<usize>(), Some(&bad));
         assert_eq!(calls(&threads, 50), 50);
     }

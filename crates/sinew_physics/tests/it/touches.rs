@@ -1,5 +1,5 @@
-//! Touches that are easily lost or reported twice: those of sleeping, bouncing and slowly rolling bodies, and of many
-//! triangles.
+//! Contact events that are easily lost or reported twice: those of sleeping, bouncing and slowly rolling bodies, and of
+//! bodies on many triangles.
 
 use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer};
@@ -36,7 +36,7 @@ fn reloaded(world: &World) -> World {
     let mut w = Writer::new();
     world.save(&mut w);
     let mut other = World::new(WorldDef::default());
-    other.load(&mut Reader::new(w.as_bytes())).expect("it is a snapshot");
+    other.load(&mut Reader::new(w.as_bytes())).expect("the snapshot must load");
     other
 }
 
@@ -64,7 +64,7 @@ fn removing_a_sleeping_body_ends_its_touches() {
             world.remove_body(sleeper);
         },
         |world, sleeper| {
-            let shape = world.shape_ids(sleeper).next().expect("it has a shape");
+            let shape = world.shape_ids(sleeper).next().expect("the body has a shape");
             world.set_filter(shape, Filter { mask: 0, ..Filter::default() });
         },
     ];
@@ -122,7 +122,7 @@ fn slow_and_bouncing_contacts_are_reported() {
 }
 
 #[test]
-fn a_ball_that_rolls_along_touches_each_slab_once() {
+fn ball_that_rolls_over_slabs_touches_each_once() {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     let slab = |i: usize| BodyDef {
         kind: BodyKind::Static,
@@ -152,11 +152,11 @@ fn trench() -> Shape {
         let [a, b, c, d] = [index(i, j), index(i, j + 1), index(i + 1, j + 1), index(i + 1, j)];
         triangles.extend([[a, b, c], [a, c, d]]);
     }
-    Shape::Mesh(Arc::new(Mesh::new(&vertices, &triangles).expect("it is a mesh")))
+    Shape::Mesh(Arc::new(Mesh::new(&vertices, &triangles).expect("the mesh is valid")))
 }
 
 #[test]
-fn many_triangles_are_one_touch_and_one_hit() {
+fn contact_with_many_triangles_begins_once_and_hits_once() {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     let mut def = BodyDef { kind: BodyKind::Static, shapes: vec![trench().into()], ..BodyDef::default() };
     def.shapes[0].material.friction = 0.05;
@@ -166,10 +166,14 @@ fn many_triangles_are_one_touch_and_one_hit() {
     block.shapes[0].material.friction = 0.05;
     let block = world.add_body(&block);
     let seen = run(&mut world, 60);
-    assert_eq!((&seen.begin[..], seen.end.len()), (&[(trench, block)][..], 0), "it falls in");
+    assert_eq!(
+        (&seen.begin[..], seen.end.len()),
+        (&[(trench, block)][..], 0),
+        "the block must fall into the trench and touch it once"
+    );
     assert_eq!((seen.shapes_begin, seen.shapes_end, seen.hits), (1, 0, 1));
     let parts = world.contacts_of(block).count();
-    assert!(parts > 1, "{parts} parts");
+    assert!(parts > 1, "the block must touch several triangles; it touches {parts}");
     // Both slopes carry the block while it slides; from tile to tile they rise and fall by 10 mm.
     let lying = world.transform(block).translation.y;
     run(&mut world, 300);

@@ -1,10 +1,11 @@
-//! Joint trees: gaps, energy and motors in the cases of the prototypes.
+//! Joint trees: gaps and energy of a chain with a heavy end and of a double pendulum.
 
 use crate::build::{ball, capsule_body};
 use sinew_math::{Sym3, Vec3};
 use sinew_physics::*;
 
-/// Returns ten links of 1 kg in a row along x, then a heavy ball, hung at the origin, with a push to the side.
+/// Returns a chain of ten links of 1 kg along x that is held at the origin, with a heavy ball at its end. The ball is
+/// pushed to the side.
 fn chain(length: f32, ratio: f32) -> (World, Vec<JointId>) {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     let mut last = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });

@@ -1,4 +1,4 @@
-//! Numeric trouble: bodies with numbers that are not finite are stopped and reported, and all others continue.
+//! Numeric failures: bodies with numbers that are not finite are stopped and reported; all other bodies continue.
 
 use crate::build::{floor, sphere_body};
 use sinew_math::{Transform, Vec3};
@@ -59,11 +59,11 @@ fn a_quarantined_body_acts_as_a_fixed_anchor() {
     }
     assert!(quarantined, "a fall faster than 1 m/s must be quarantined");
     let gap = world.particles(group).positions()[0] - world.transform(body).translation;
-    assert!(gap.length() < 0.01, "{gap}");
+    assert!(gap.length() < 0.01, "the particle is off its quarantined body by {gap}");
 }
 
 #[test]
-fn a_star_does_not_fall_asleep_under_its_satellite() {
+fn body_that_attracts_a_satellite_does_not_sleep() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     world.add_field(&FieldDef::new(FieldKind::Mutual(MutualGravity {
         constant: 1e-3,
@@ -88,7 +88,7 @@ fn a_star_does_not_fall_asleep_under_its_satellite() {
 }
 
 #[test]
-fn a_low_speed_limit_does_not_limit_spin() {
+fn low_limit_of_linear_speed_does_not_limit_spin() {
     let mut world = World::new(WorldDef { max_speed: 50.0, ..WorldDef::default() });
     floor(&mut world);
     let mut ball = sphere_body(0.1, Vec3::Y * 0.0999);
@@ -139,8 +139,8 @@ fn extreme_impulses_are_limited_and_reported() {
     }
 }
 
-/// A blow against a head of 3 kg on a light neck turns the neck at over 10,000 rad/s in the first solve. The inner motion is slowed; the
-/// momentum stays in the island, also while it stands on a floor.
+/// A blow against a head of 3 kg on a light neck rotates the neck at over 10,000 rad/s in the first solve. The step
+/// limits the relative motion, but the momentum stays in the island, also while the island stands on a floor.
 #[test]
 fn a_hard_blow_keeps_its_momentum_on_a_floor() {
     for impulse in [100.0, 2000.0, 6000.0] {
@@ -162,7 +162,10 @@ fn a_hard_blow_keeps_its_momentum_on_a_floor() {
             world.step();
             let momentum: f32 =
                 [base, neck, head].map(|id| world.velocity(id).linear.x * world.mass(id).mass).iter().sum();
-            assert!((momentum - impulse).abs() < 0.02 * impulse, "{impulse} N·s, step {step}: {momentum}");
+            assert!(
+                (momentum - impulse).abs() < 0.02 * impulse,
+                "impulse {impulse} N·s, step {step}: momentum {momentum} N·s"
+            );
         }
     }
 }
@@ -179,9 +182,9 @@ fn extreme_spins_are_limited_and_reported() {
         let most = core::f32::consts::FRAC_PI_2 * 240.0;
         assert!(
             (spin.y - most).abs() < 1e-3 * most && spin.x.abs() + spin.z.abs() < 1e-3,
-            "{impulse:e}: {spin}"
+            "impulse {impulse:e}: spin {spin} rad/s"
         );
-        assert_eq!(world.events().limited, [body], "{impulse:e}");
+        assert_eq!(world.events().limited, [body], "impulse {impulse:e}: the limited body must be reported");
     }
 }
 
@@ -201,8 +204,15 @@ fn an_extreme_kinematic_spin_pushes_nothing_far_away() {
         let body = world.add_body(&BodyDef::dynamic(cone).at(Vec3::new(3.0, 2.5, 0.3)));
         for step in 0..60 {
             world.step();
-            assert_eq!(world.velocity(body), Velocity::default(), "{spin:e}, step {step}");
-            assert!(world.events().begin.is_empty(), "{spin:e}, step {step}");
+            assert_eq!(
+                world.velocity(body),
+                Velocity::default(),
+                "spin {spin:e}, step {step}: the body must stay untouched"
+            );
+            assert!(
+                world.events().begin.is_empty(),
+                "spin {spin:e}, step {step}: the body must stay untouched"
+            );
         }
     }
 }

@@ -41,11 +41,11 @@ fn the_state_after_step_k_is_the_same_at_any_frame_rate() {
     }
     for rate in [24, 30, 60, 144] {
         let frame = Duration::from_secs(1) / rate;
-        assert_eq!(hashes(|| frame), expected, "other hashes at {rate} frames a second");
+        assert_eq!(hashes(|| frame), expected, "the hashes differ at {rate} frames per second");
     }
     let mut random = Random::new(1);
     let jittered = hashes(|| Duration::from_secs_f32(random.range(0.0, 0.03)));
-    assert_eq!(jittered, expected, "frames of any length");
+    assert_eq!(jittered, expected, "the hashes differ with frames of random lengths");
 }
 
 #[test]
@@ -57,7 +57,7 @@ fn time_beyond_catch_up_steps_is_dropped_and_reported() {
     assert_eq!((late.steps, late.dropped), (4, step * 6));
     assert!((late.alpha - 0.5).abs() < 1e-6, "time less than a step must wait for the next frame");
     assert_eq!(world.step_count(), 8);
-    // Host that slept for five hundred years.
+    // The frame lasts longer than five hundred years.
     let late = world.update(Duration::from_secs(500 * 365 * 86_400));
     assert_eq!(late.steps, 4);
     assert_eq!(world.update(Duration::MAX).steps, 4);
@@ -65,7 +65,7 @@ fn time_beyond_catch_up_steps_is_dropped_and_reported() {
 }
 
 #[test]
-fn a_quarter_of_a_second_is_caught_up_by_default() {
+fn default_settings_catch_up_at_most_a_quarter_of_a_second() {
     let mut world = World::new(WorldDef::default());
     let late = world.update(Duration::from_secs(1));
     assert_eq!(late.steps, 15);
@@ -73,7 +73,7 @@ fn a_quarter_of_a_second_is_caught_up_by_default() {
 }
 
 #[test]
-fn the_host_gets_every_step_of_a_frame() {
+fn update_with_calls_the_host_for_every_step_of_a_frame() {
     let push = Vec3::new(3.0, 0.0, 0.0);
     let world = || {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -96,7 +96,7 @@ fn the_host_gets_every_step_of_a_frame() {
 
 #[test]
 #[should_panic(expected = "each call takes one step")]
-fn an_invalid_step_length_panics() {
+fn callback_that_takes_no_step_panics() {
     World::new(WorldDef::default()).update_with(Duration::from_millis(20), |_| {});
 }
 
@@ -114,11 +114,11 @@ fn interpolated_poses_lie_between_two_steps() {
         let alpha = world.update(frame).alpha;
         time += frame.as_secs_f32();
         if world.step_count() > 0 {
-            // One step behind the elapsed time.
+            // The interpolated pose is one step behind the elapsed time.
             let expected = time - world.def().dt();
             let of_particle = world.particles(group).interpolated(alpha).next();
             for x in [world.interpolated(body, alpha).translation.x, of_particle.map_or(0.0, |at| at.x)] {
-                assert!((x - expected).abs() < 1e-5, "{x} for {expected}");
+                assert!((x - expected).abs() < 1e-5, "interpolated x {x} m, expected {expected} m");
             }
         }
     }

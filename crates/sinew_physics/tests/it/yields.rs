@@ -1,4 +1,4 @@
-//! Shapes that yield: kinematic bodies that push with a limited force.
+//! Yielding shapes: kinematic bodies that push with at most a given force and stop pushing beyond it.
 
 use crate::build::{ball as ball_joint, box_body, capsule_body, floor, sphere_body};
 use sinew_math::{Reader, Rotation, Vec3, Writer, max};
@@ -34,7 +34,7 @@ fn ball(world: &mut World, at: Vec3, velocity: Vec3) -> BodyId {
 }
 
 #[test]
-fn a_ball_bounces_off_and_is_kicked() {
+fn yielding_arm_reflects_and_kicks_a_ball() {
     let mut world = level();
     arm(&mut world, Vec3::Y * 0.5, Vec3::ZERO);
     let thrown = ball(&mut world, Vec3::new(-1.0, 0.5, 0.0), Vec3::X * 20.0);
@@ -42,7 +42,7 @@ fn a_ball_bounces_off_and_is_kicked() {
         world.step();
     }
     let back = -world.velocity(thrown).linear.x;
-    assert!((back - 16.0).abs() < 0.3, "the arm returns at {back} m/s");
+    assert!((back - 16.0).abs() < 0.3, "the ball leaves the arm at {back} m/s, expected 16 m/s");
 
     let mut world = level();
     arm(&mut world, Vec3::new(-0.5, 0.5, 0.0), Vec3::X * 4.0);
@@ -50,7 +50,11 @@ fn a_ball_bounces_off_and_is_kicked() {
     for _ in 0..20 {
         world.step();
     }
-    assert!(world.velocity(kicked).linear.x > 3.9, "it goes at {}", world.velocity(kicked).linear.x);
+    assert!(
+        world.velocity(kicked).linear.x > 3.9,
+        "the kicked ball moves at {} m/s",
+        world.velocity(kicked).linear.x
+    );
 }
 
 #[test]
@@ -70,11 +74,11 @@ fn a_yielding_contact_with_a_crate_is_reported() {
     assert!(world.transform(arm).translation.x > 1.0, "the arm must pass through");
     assert_eq!(told, 1, "the contact must be reported once");
     let way = world.transform(load).translation.x;
-    assert!(way.abs() < 0.01 && fastest < 0.1, "moved {way} m, fastest {fastest} m/s");
+    assert!(way.abs() < 0.01 && fastest < 0.1, "the crate must stay; moved {way} m, fastest {fastest} m/s");
 }
 
 #[test]
-fn a_body_jammed_against_a_wall_is_not_crushed() {
+fn yielding_arm_stops_at_a_body_against_a_wall() {
     let mut world = level();
     let wall = Shape::Box { half_extents: Vec3::new(0.2, 1.0, 1.0) };
     world.add_body(&BodyDef::fixed(wall).at(Vec3::new(0.45, 1.0, 0.0)));
@@ -88,11 +92,15 @@ fn a_body_jammed_against_a_wall_is_not_crushed() {
         let sunk = world.penetration(load);
         assert!(sunk < 0.01, "the arm is {sunk} m inside the wall");
     }
-    assert!((world.transform(load).translation.x).abs() < 0.02, "{}", world.transform(load).translation);
+    assert!(
+        (world.transform(load).translation.x).abs() < 0.02,
+        "the load must stay at the wall; it is at {}",
+        world.transform(load).translation
+    );
 }
 
 #[test]
-fn a_limb_driven_into_a_standing_arm_passes() {
+fn limb_driven_into_a_standing_arm_passes_it() {
     let mut world = level();
     arm(&mut world, Vec3::Y * 0.5, Vec3::ZERO);
     let hip = Vec3::new(-0.7, 0.5, 0.0);
@@ -131,18 +139,22 @@ fn heavy_fast_bodies_pass_and_dynamic_shapes_push() {
         }
         (world.velocity(load).linear.x, world.velocity(post).linear.x)
     };
-    assert_eq!(fly(BodyKind::Kinematic), (6.0, 0.0), "an impulse of 240 N·s exceeds the strength");
+    assert_eq!(
+        fly(BodyKind::Kinematic),
+        (6.0, 0.0),
+        "the load must pass a kinematic post: its impulse of 240 N·s exceeds the strength"
+    );
     let (load, post) = fly(BodyKind::Dynamic);
-    assert!(load < 4.0 && post > 1.0, "{load} and {post} m/s");
+    assert!(load < 4.0 && post > 1.0, "a dynamic post must be pushed; load {load} m/s, post {post} m/s");
 }
 
 #[test]
-fn movers_pass_yielding_shapes_and_snapshots_restore_equally() {
+fn movers_pass_yielding_shapes_and_restored_worlds_continue_equally() {
     let mut world = level();
     arm(&mut world, Vec3::new(1.0, 0.6, 0.0), Vec3::X * -0.5);
     let mover = world.add_mover(&MoverDef::at(Vec3::ZERO));
     world.set_mover_walk(mover, Vec3::X * 2.0);
-    // Low enough for a step over it.
+    // The load is low enough for the mover to step over it.
     let load = world.add_body(&box_body(Vec3::splat(0.15), Vec3::new(0.6, 0.15, 0.1)));
     for _ in 0..30 {
         world.step();
@@ -150,7 +162,7 @@ fn movers_pass_yielding_shapes_and_snapshots_restore_equally() {
     let mut w = Writer::new();
     world.save(&mut w);
     let mut other = World::new(WorldDef::default());
-    other.load(&mut Reader::new(w.as_bytes())).expect("it is a snapshot");
+    other.load(&mut Reader::new(w.as_bytes())).expect("the snapshot must load");
     for _ in 0..60 {
         world.step();
         other.step();

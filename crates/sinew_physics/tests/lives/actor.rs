@@ -1,4 +1,4 @@
-//! A world with names for its objects, so that several worlds can get the same calls.
+//! A world and names for its objects, so that several worlds can get the same calls.
 
 use crate::code::{self, Code, rusty};
 use crate::extension::Extension;
@@ -10,11 +10,11 @@ use sinew_physics::stage::NoProfiler;
 use sinew_physics::*;
 use std::collections::BTreeMap;
 
-/// Objects of a kind that a life has created, each with its name: a number that does not change when earlier deeds are
-/// removed.
+/// Objects of one kind that a life has created, each with its name. The name is a number that does not change when
+/// earlier deeds are removed from the life.
 pub type Names<T> = Vec<(u64, T)>;
 
-/// Kind of another world that will continue next to this one.
+/// Way to create a copy of a world that continues next to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Twin {
     /// A new world that loads a snapshot.
@@ -42,7 +42,7 @@ pub struct Actor {
     /// Twin that the current deed requests.
     pub wanted: Option<Twin>,
     pub threads: Option<Threads>,
-    /// Objects next to the world, such as characters.
+    /// Objects that are kept next to the world, such as characters.
     pub more: Extension,
     /// Name of the current deed, and the number of objects it has named.
     deed: u64,
@@ -77,7 +77,7 @@ macro_rules! ask_all {
     }};
 }
 
-/// Returns an owner of bodies and joints.
+/// Returns the owner to which deeds assign bodies and joints.
 pub fn owner() -> Owner {
     Owner { name: "cart".into(), calls: "`Cart::scrap`".into(), parts: vec!["wheel".into()] }
 }
@@ -88,7 +88,7 @@ const OWNER: &str =
 
 /// Records an answer, for the comparison with other worlds.
 pub fn say(said: &mut String, name: &str, answer: &dyn core::fmt::Debug) {
-    writeln!(said, "{name}: {answer:?}").expect("memory");
+    writeln!(said, "{name}: {answer:?}").expect("writing to a string cannot fail");
 }
 
 impl Actor {
@@ -197,7 +197,7 @@ impl Actor {
         id
     }
 
-    /// Stores a joint that the last call created under a new name.
+    /// Gives a new name to a joint that the last call created.
     pub fn name_joint(&mut self, id: JointId) {
         self.let_be(&id);
         let name = self.name();
@@ -321,7 +321,7 @@ impl Actor {
     }
 }
 
-/// True if particles are attached to a body or an object needs it, so that it cannot be removed.
+/// Returns whether a body cannot be removed because particles are attached to it or an object needs it.
 pub fn is_worn(world: &World, id: BodyId) -> bool {
     let by_particles = world.group_ids().any(|group| {
         let group = world.particles(group);
@@ -339,8 +339,8 @@ pub fn stranger(original: &World) -> World {
     let (mut shapes, mut state) = (Writer::new(), Writer::new());
     original.save_shapes(&mut shapes);
     original.save(&mut state);
-    world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("a saved library is valid");
-    world.load(&mut Reader::new(state.as_bytes())).expect("a saved world is valid");
+    world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("the saved shape library must load");
+    world.load(&mut Reader::new(state.as_bytes())).expect("the snapshot must load");
     world
 }
 
@@ -349,11 +349,12 @@ pub fn reload(world: &mut World) {
     let (mut shapes, mut state) = (Writer::new(), Writer::new());
     world.save_shapes(&mut shapes);
     world.save(&mut state);
-    world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("a saved library is valid");
-    world.load(&mut Reader::new(state.as_bytes())).expect("a saved world is valid");
+    world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("the saved shape library must load");
+    world.load(&mut Reader::new(state.as_bytes())).expect("the snapshot must load");
 }
 
-/// Returns the object whose name ranks highest for the key: it does not depend on the other objects.
+/// Returns the object whose name ranks highest for the key, among those that meet the condition. The rank of an object
+/// does not depend on the others.
 pub fn pick<T: Copy>(all: &[(u64, T)], key: u64, is: impl Fn(T) -> bool) -> Option<T> {
     let rank = |name: u64| {
         let mixed = (name ^ key).wrapping_mul(0xff51_afd7_ed55_8ccd);

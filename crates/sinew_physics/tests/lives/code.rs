@@ -20,7 +20,7 @@ pub fn argument(written: &str, value: &dyn Debug) -> String {
     format!("{borrowed}{}", rusty(&format!("{value:?}")))
 }
 
-/// Names of variants, their enum, and the text that follows the name: nothing, `(` or ` {`.
+/// Entries `(enum, names of variants, text after the name)`. The text is empty, `(` or ` {`.
 const VARIANTS: &[(&str, &str, &str)] = &[
     ("BodyKind", "Static Kinematic Dynamic", ""),
     ("Sleeping", "On Off", ""),
@@ -51,7 +51,7 @@ const VARIANTS: &[(&str, &str, &str)] = &[
     ("particles::Resists", "Both Stretch", ""),
 ];
 
-/// Enums whose variants share names with others, by the name of the field.
+/// Entries `(field, enum)` for enums whose variants share their names with variants of other enums.
 const FIELDS: &[(&str, &str)] = &[
     ("state", "JointState"),
     ("collision", "JointCollision"),
@@ -60,11 +60,11 @@ const FIELDS: &[(&str, &str)] = &[
     ("frame", "ForceFrame"),
 ];
 
-/// Names of the fields that are lists, not arrays.
+/// Names of the fields that are vectors, not arrays.
 const LISTS: &str =
     " shapes particles springs bends tethers volumes triangles faces attachments backstops passes ";
 
-/// Returns Rust code for the output of `Debug`.
+/// Converts the output of `Debug` to Rust code.
 pub fn rusty(text: &str) -> String {
     let mut out = String::new();
     let (mut rest, mut field) = (text, "");

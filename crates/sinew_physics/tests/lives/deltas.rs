@@ -1,10 +1,10 @@
-//! Deltas of snapshots are exact, small for small changes, and refused if damaged.
+//! Deltas between snapshots are exact, are small for small changes, and are refused if damaged.
 
 use crate::lies::at_each_step;
 use sinew_math::Random;
 use sinew_physics::*;
 
-/// Returns the snapshots of a life, step by step, with objects added and removed between them.
+/// Returns the snapshots after the first steps of a life, between which objects are added and removed.
 fn snapshots(seed: u64) -> Vec<Snapshot> {
     let mut all = Vec::new();
     at_each_step(seed, |world| all.push(Snapshot::of(world)));
@@ -53,8 +53,8 @@ fn resting_bodies_add_almost_nothing_to_a_delta() {
     let delta = later.delta(&earlier);
     assert!(delta.len() < 200, "{} of {} bytes", delta.len(), later.as_bytes().len());
     let mut other = World::new(WorldDef::default());
-    let back = Snapshot::from_delta(&earlier, &delta).expect("a delta");
-    back.load_into(&mut other).expect("a snapshot");
+    let back = Snapshot::from_delta(&earlier, &delta).expect("the delta must apply to its base");
+    back.load_into(&mut other).expect("the snapshot must load");
     assert_eq!((other.hash(), other.transform(ball)), (world.hash(), world.transform(ball)));
 }
 

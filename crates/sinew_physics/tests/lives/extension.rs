@@ -1,5 +1,5 @@
-//! Objects next to a world, with their own deeds: none here. The lives of the ragdoll crate use the same files and have
-//! characters in this file.
+//! Objects that are kept next to a world, and their deeds. There are none here; the ragdoll crate replaces this file by
+//! one with characters.
 
 use crate::actor::Twin;
 use crate::deeds::Deed;
@@ -10,10 +10,10 @@ use sinew_physics::World;
 
 /// Types whose public methods the lives call.
 pub const CALLED: &[&str] = &["World"];
-/// Additional deeds, and the names of those that create the initial objects.
+/// Additional deeds, and the names of the deeds that create the initial objects.
 pub const DEEDS: &[&[Deed]] = &[];
 pub const MAKERS: &[&str] = &[];
-/// Range of the number of steps with deeds.
+/// Range of the number of steps in which a life does deeds.
 pub const BUSY: Range<u32> = 20..100;
 
 /// Objects kept next to a world.
@@ -43,7 +43,7 @@ impl Extension {
         String::new()
     }
 
-    /// True if the objects release energy that the checks do not count.
+    /// Returns whether the objects release energy that the checks do not count.
     pub fn drives(&self) -> bool {
         false
     }

@@ -1,4 +1,4 @@
-//! User functions and objects that lives register.
+//! User functions and kinds of objects that lives register.
 
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::field::{FieldPoint, PARAMETERS};
@@ -6,7 +6,7 @@ use sinew_physics::*;
 
 pub const NUMBER: u32 = 1;
 
-/// Registers all functions and objects.
+/// Registers all functions and kinds of objects.
 pub fn register(world: &mut World) {
     world.register_pair_function(NUMBER, parity);
     world.register_modifier(NUMBER, slippery);
@@ -53,7 +53,7 @@ impl PhysicsObject for Tug {
         self.asked += 1;
         if forces.contains(self.body) {
             let pull = (self.place - forces.center_of_mass(self.body)) * self.stiffness;
-            // Pulls from huge distances are skipped.
+            // Bodies at huge distances are not pulled.
             if pull.length() < 1e12 {
                 forces.apply_force_at_center(self.body, pull);
             }

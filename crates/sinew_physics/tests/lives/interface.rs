@@ -1,22 +1,22 @@
-//! Public methods in the sources of the crate: each needs a deed that calls it.
+//! Collects the public methods from the crate's sources. Each needs a deed that calls it.
 
 use crate::extension::CALLED;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// Returns the names of all public methods of the types that lives call: methods of `World` by their name, others after
-/// the name of their type.
+/// Returns the names of all public methods of the types that lives call: `method` for methods of `World`, otherwise
+/// `Type::method`.
 pub fn methods() -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src")];
     while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(&folder).expect("the sources are there") {
-            let path = entry.expect("an entry").path();
+        for entry in fs::read_dir(&folder).expect("the folder with the sources must be readable") {
+            let path = entry.expect("the folder's entry must be readable").path();
             if path.is_dir() {
                 folders.push(path);
             } else if path.extension().is_some_and(|extension| extension == "rs") {
-                of_file(&fs::read_to_string(&path).expect("a source"), &mut found);
+                of_file(&fs::read_to_string(&path).expect("the source file must be readable"), &mut found);
             }
         }
     }
@@ -41,13 +41,13 @@ fn of_file(source: &str, found: &mut BTreeSet<String>) {
         } else if line == "}" {
             inside = None;
         } else if let (Some(of), Some(rest)) = (inside, line.strip_prefix("    pub fn ")) {
-            let end = rest.find(['(', '<']).expect("a method has arguments");
+            let end = rest.find(['(', '<']).expect("a method's name ends at a bracket");
             found.insert(named(of, &rest[..end]));
         }
     }
 }
 
-/// True if the lives call every method.
+/// Returns whether the lives call every method.
 pub fn has_all(calls: &BTreeMap<&'static str, u64>) -> bool {
     methods().iter().all(|name| calls.contains_key(name.as_str()))
 }

@@ -9,15 +9,15 @@ use sinew_math::{Random, Reader, Writer};
 use sinew_physics::*;
 use std::time::{Duration, Instant};
 
-/// Number of damaged snapshots of each world (a fifth of it unless `SINEW_FULL` is set), and number of worlds.
-const LIES: usize = 500;
+/// Number of damaged snapshots of each world with `SINEW_FULL` set (otherwise a fifth of it), and number of worlds.
+const DAMAGED: usize = 500;
 const WORLDS: u64 = 20;
 /// Number of steps of a world that loads a damaged snapshot.
 const STEPS: usize = 3;
 /// Longest time for loading and stepping one snapshot.
 const LONG: Duration = Duration::from_secs(5);
 
-/// Returns a world halfway through a life as bytes: its shapes and its state.
+/// Returns the shape library and the snapshot of a world after the first steps of a life.
 fn saved(seed: u64) -> (Vec<u8>, Vec<u8>) {
     let mut last = (Vec::new(), Vec::new());
     at_each_step(seed, |world| {
@@ -29,7 +29,7 @@ fn saved(seed: u64) -> (Vec<u8>, Vec<u8>) {
     last
 }
 
-/// Passes the world to a function after each of the first steps of a life.
+/// Calls a function with the world after each of the first steps of a life.
 pub fn at_each_step(seed: u64, mut show: impl FnMut(&World)) {
     let life = Life::of(seed);
     let (world, floor) = life.world();
@@ -44,7 +44,7 @@ pub fn at_each_step(seed: u64, mut show: impl FnMut(&World)) {
     }
 }
 
-fn lie(bytes: &mut Vec<u8>, random: &mut Random) {
+fn damage(bytes: &mut Vec<u8>, random: &mut Random) {
     let at = random.index(bytes.len());
     match random.index(6) {
         0 => bytes[at] ^= 1 << random.index(8),
@@ -52,7 +52,7 @@ fn lie(bytes: &mut Vec<u8>, random: &mut Random) {
         2 => bytes[at] = [0, 1, 0x7f, 0x80, 0xff][random.index(5)],
         3 => bytes.truncate(at),
         4 => {
-            // NaN, infinity, a huge number, or an index.
+            // Writes NaN, infinity, a huge number, -1, 0 or a small integer.
             let number = [f32::NAN, f32::INFINITY, f32::MAX, -1.0, 0.0][random.index(5)].to_bits();
             let number = if random.unit() < 0.3 { random.index(40) as u32 } else { number };
             let end = usize::min(at + 4, bytes.len());
@@ -67,11 +67,11 @@ fn lie(bytes: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// Loads a snapshot and steps the world; returns true if the snapshot was accepted.
-fn live_on(shapes: &[u8], state: &[u8]) -> bool {
+/// Loads a snapshot and steps the world. Returns whether the snapshot was accepted.
+fn load_and_step(shapes: &[u8], state: &[u8]) -> bool {
     let mut world = World::new(WorldDef::default());
     functions::register(&mut world);
-    world.load_shapes(&mut Reader::new(shapes)).expect("a saved library is valid");
+    world.load_shapes(&mut Reader::new(shapes)).expect("the saved shape library must load");
     let before = world.hash();
     if world.load(&mut Reader::new(state)).is_err() {
         assert_eq!(world.hash(), before, "a refused snapshot must not change the world");
@@ -85,19 +85,19 @@ fn live_on(shapes: &[u8], state: &[u8]) -> bool {
 fn damaged_snapshots_are_refused_or_step() {
     let mut random = Random::new(57);
     let (mut taken, mut all) = (0, 0);
-    let lies = if std::env::var_os("SINEW_FULL").is_some() { LIES } else { LIES / 5 };
+    let count = if std::env::var_os("SINEW_FULL").is_some() { DAMAGED } else { DAMAGED / 5 };
     for seed in 0..WORLDS {
         let (shapes, state) = saved(seed);
-        assert!(live_on(&shapes, &state), "the truth is taken");
-        for number in 0..lies {
+        assert!(load_and_step(&shapes, &state), "the undamaged snapshot must load");
+        for number in 0..count {
             let mut bytes = state.clone();
             for _ in 0..1 + random.index(3) {
                 if !bytes.is_empty() {
-                    lie(&mut bytes, &mut random);
+                    damage(&mut bytes, &mut random);
                 }
             }
             let start = Instant::now();
-            let outcome = caught(|| live_on(&shapes, &bytes));
+            let outcome = caught(|| load_and_step(&shapes, &bytes));
             let time = start.elapsed();
             assert!(time < LONG, "world {seed}, damage {number}: loading took {time:?}");
             match outcome {

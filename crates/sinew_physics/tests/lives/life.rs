@@ -1,4 +1,4 @@
-//! A life: the settings of a world and the deeds before each step, from a seed.
+//! A life: settings of a world and the deeds before each step, all derived from a seed.
 
 use crate::deeds::{self, Deed, MAKERS};
 use crate::extension;
@@ -10,7 +10,7 @@ use sinew_physics::*;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     HalfSpace,
-    /// A thick box: the shortest way out of it is up.
+    /// A box so thick that the shortest way out of it is upward.
     Box,
     /// Abutting boxes.
     Boxes,
@@ -21,7 +21,7 @@ pub enum Ground {
 #[derive(Clone, Copy)]
 pub struct Act {
     pub step: u32,
-    /// Name of the deed in this life, which is also the seed of its numbers.
+    /// Number that identifies the deed in this life; also the seed of the deed's numbers.
     pub number: u64,
     pub deed: &'static Deed,
 }
@@ -36,10 +36,10 @@ pub struct Life {
     pub steps: u32,
 }
 
-/// Deeds that prevent the energy check, and the share of lives without them.
+/// Deeds after which the energy check is impossible, and the share of lives without them.
 const STIRRING: [&str; 5] = ["add_force", "set_force", "add_field", "add_particles", "add_object"];
 const PLAIN: f32 = 0.3;
-/// Number of steps after the last deed, in which a life is only checked.
+/// Number of steps after the last deed, in which the world is only checked.
 const QUIET: u32 = 50;
 
 impl Life {
@@ -86,14 +86,14 @@ impl Life {
                     left = left.saturating_sub(deed.weight);
                     is_it
                 });
-                push(step, n.bits(), deed.expect("weights sum up"));
+                push(step, n.bits(), deed.expect("the drawn number is below the sum of all weights"));
             }
         }
         life
     }
 
-    /// Returns a calm life that does each deed twice, six deeds before each step, so that it has the calls that are
-    /// rare in other lives.
+    /// Returns a calm life that does each deed twice, six deeds before each step. It makes the calls that are rare in
+    /// other lives.
     pub fn of_each_deed(seed: u64) -> Self {
         let mut n = Numbers::new(!seed, Taste::Any, Temper::Calm);
         let all = deeds::all();
@@ -134,7 +134,7 @@ impl Life {
             Ground::Mesh => {
                 let corners = [(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)];
                 let points = corners.map(|(x, z)| Vec3::new(x, 0.0, z));
-                let mesh = Shape::mesh(&points, &[[0, 2, 1], [0, 3, 2]]).expect("a mesh");
+                let mesh = Shape::mesh(&points, &[[0, 2, 1], [0, 3, 2]]).expect("the mesh is valid");
                 world.add_body(&BodyDef::fixed(mesh))
             }
         };

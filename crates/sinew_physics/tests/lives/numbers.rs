@@ -1,18 +1,18 @@
-//! Numbers of a life: round, equal, at their bounds, zero, huge, or arbitrary.
+//! Random numbers for the calls of a life: round, equal, at their bounds, zero, huge, or arbitrary.
 
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::Velocity;
 
-/// Kind of numbers of a life.
+/// Kind of numbers that a life uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taste {
     /// A few round numbers, such as people write.
     Round,
-    /// One number for each range.
+    /// The same number for all calls with the same range.
     Equal,
-    /// Smallest and largest number of each range.
+    /// The smallest or the largest number of the range.
     Bounds,
-    /// Any number.
+    /// Any number of the range.
     Any,
 }
 
@@ -21,7 +21,7 @@ pub enum Taste {
 pub enum Temper {
     /// Sizes and speeds that are usual in games.
     Calm,
-    /// Like calm, but sometimes numbers up to the largest possible.
+    /// Like `Calm`, but sometimes extreme numbers, up to the largest possible.
     Wild,
 }
 
@@ -60,7 +60,7 @@ impl Numbers {
         all[self.random.index(all.len())]
     }
 
-    /// Returns a number of a range, by the taste of the life.
+    /// Returns a number of a range, according to the taste of the life.
     pub fn between(&mut self, lo: f32, hi: f32) -> f32 {
         match self.taste {
             Taste::Any => self.random.range(lo, hi),
@@ -84,7 +84,7 @@ impl Numbers {
         if self.chance(0.2) { 0.0 } else { sign * self.between(0.0, most) }
     }
 
-    /// Returns a number of a range that is not negative; in a wild life sometimes an extreme one.
+    /// Returns a number of a non-negative range; in a wild life sometimes an extreme one.
     pub fn least(&mut self, lo: f32, hi: f32) -> f32 {
         if self.is_wild() { self.one_of(&HUGE) } else { self.between(lo, hi) }
     }

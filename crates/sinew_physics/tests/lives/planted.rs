@@ -34,14 +34,14 @@ impl Plant {
     ];
 }
 
-/// Number of steps at the end of a life in which the fault is injected.
+/// Number of steps at the end of a life in which faults are injected.
 pub const LAST: u32 = 15;
 
 impl Plant {
-    /// Changes a world that was just created from another.
+    /// Changes a twin that was just created.
     pub fn in_twin(self, world: &mut World) {
         if self == Self::ForgottenField {
-            // Effect of a snapshot without times at rest: the time at rest of bodies starts again.
+            // Waking restarts the time at rest of a body, as loading a snapshot without this time would.
             let rested: Vec<BodyId> = world.body_ids().filter(|&id| world.is_awake(id)).collect();
             rested.into_iter().for_each(|id| world.wake(id));
         }
@@ -68,7 +68,7 @@ impl Plant {
         let moving = world.body_ids().find(|&id| world.kind(id) == BodyKind::Dynamic && world.is_awake(id));
         if let Some(id) = moving {
             let v = world.velocity(id);
-            // Changes the last bit, as a sum in another order would.
+            // Changes the last bit, as adding numbers in another order can.
             let x = f32::from_bits(v.linear.x.to_bits() ^ 1);
             world.set_velocity(id, Velocity { linear: Vec3 { x, ..v.linear }, ..v });
         }
@@ -105,7 +105,7 @@ fn sink(world: &mut World) {
 }
 
 impl Plant {
-    /// True if a fault that a life has found is the injected one.
+    /// Returns whether a fault that a life has found is of the injected kind.
     pub fn is_found(self, fault: &Fault) -> bool {
         match self {
             Self::ForgottenField | Self::ThreadOrder => matches!(fault, Fault::Differs(_)),
@@ -117,7 +117,7 @@ impl Plant {
         }
     }
 
-    /// Returns the lives of `seeds` that find this fault, with their times, the fastest first.
+    /// Returns the seeds of the lives that find this fault, each with its running time, the fastest first.
     pub fn found_in(self, seeds: Range<u64>) -> Vec<(Duration, u64)> {
         let found = |seed| {
             let began = Instant::now();

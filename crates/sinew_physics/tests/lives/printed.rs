@@ -1,4 +1,4 @@
-//! The program that a life prints has the same effect as the life.
+//! Test of the printed programs: they have the same effect as their lives.
 
 use crate::deeds;
 use crate::life::{Act, Ground, Life};
@@ -31,21 +31,21 @@ fn of_each_deed() -> Life {
     Life { taste, temper, ground, def: WorldDef::default(), acts, steps: 45 }
 }
 
-/// The file `program.txt`, which is compiled, equals the printed text and has the effect of the life. `SINEW_BLESS`
-/// writes it.
+/// The file `program.txt`, which this test compiles, equals the printed text and has the effect of the life. With
+/// `SINEW_BLESS` set, the test writes the file.
 #[test]
-fn a_printed_program_does_what_the_life_did() {
+fn printed_program_has_the_effect_of_its_life() {
     let life = of_each_deed();
     let outcome = run(&life, None, true);
     assert_eq!(outcome.result, Ok(()));
-    let lines = outcome.program.expect("lines were asked for");
+    let lines = outcome.program.expect("the run must return the requested program");
     let text = program(&life, &lines);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lives/program.txt");
     if std::env::var_os("SINEW_BLESS").is_some() {
-        std::fs::write(&path, text).expect("a file");
+        std::fs::write(&path, text).expect("`program.txt` must be writable");
         return;
     }
-    let kept = std::fs::read_to_string(&path).expect("the program is there");
+    let kept = std::fs::read_to_string(&path).expect("`program.txt` must be readable");
     assert!(kept == text, "the printed program differs from `program.txt`; SINEW_BLESS=1 writes it anew");
     assert_eq!(kept::program().hash(), outcome.hash, "the program must end in the same state");
 }

@@ -16,7 +16,7 @@ pub struct Failure {
     pub fault: Fault,
 }
 
-/// Result of a life, its calls by name, and its metrics.
+/// Result of a life, the number of its calls of each method, and its metrics.
 pub struct Outcome {
     pub result: Result<(), Failure>,
     pub calls: BTreeMap<&'static str, u64>,
@@ -26,7 +26,7 @@ pub struct Outcome {
     pub rise: f32,
     /// Hash of the last state of the first world.
     pub hash: u64,
-    /// The equivalent program, if it was requested.
+    /// Lines of the equivalent program, if they were requested.
     pub program: Option<Vec<String>>,
 }
 
@@ -38,7 +38,7 @@ thread_local! {
     static CATCHES: RefCell<bool> = const { RefCell::new(false) };
 }
 
-/// Installs a hook, so that panics of lives are caught, not printed.
+/// Installs a panic hook that stores the messages of panics in lives instead of printing them.
 fn catch_panics() {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -53,7 +53,7 @@ fn catch_panics() {
     });
 }
 
-/// Returns the result of a function, or its panic.
+/// Returns the result of a function, or the message of its panic.
 pub fn caught<T>(run: impl FnOnce() -> T) -> Result<T, String> {
     catch_panics();
     CATCHES.with(|catches| *catches.borrow_mut() = true);
@@ -61,14 +61,14 @@ pub fn caught<T>(run: impl FnOnce() -> T) -> Result<T, String> {
     CATCHES.with(|catches| *catches.borrow_mut() = false);
     result.map_err(|_| {
         let text = CAUGHT.with(|caught| caught.borrow_mut().take());
-        text.unwrap_or_else(|| "on another thread".to_owned())
+        text.unwrap_or_else(|| "panic on another thread".to_owned())
     })
 }
 
 struct Run<'a> {
     life: &'a Life,
     actors: Vec<Actor>,
-    /// Descriptions of the twins, for messages.
+    /// Descriptions of the actors, for messages.
     names: Vec<String>,
     watch: Watch,
     plant: Option<Plant>,
@@ -76,14 +76,14 @@ struct Run<'a> {
     deeds: u64,
 }
 
-/// Runs a life with an optional injected fault; if `told`, also records it as a program.
+/// Runs a life, with an injected fault if `plant` has one. If `told`, also records the life as a program.
 pub fn run(life: &Life, plant: Option<Plant>, told: bool) -> Outcome {
     let (world, floor) = life.world();
     let mut first = Actor::new(world, floor, None);
     first.lines = told.then(Vec::new);
     let (world, floor) = life.world();
     let second = Actor::new(world, floor, Some(Threads::new(2)));
-    let names = vec!["the first".to_owned(), "the same calls on two threads".to_owned()];
+    let names = vec!["the first world".to_owned(), "the same calls on two threads".to_owned()];
     let watch = Watch::default();
     let mut run = Run { life, actors: vec![first, second], names, watch, plant, step: 0, deeds: 0 };
     let result = caught(|| run.all()).unwrap_or_else(|text| Err(Fault::Panic(text)));
@@ -128,7 +128,8 @@ impl Run<'_> {
             let same = did == done && self.actors[i].said == self.actors[0].said;
             if !same {
                 let (p, q) = differing(&self.actors[0].said, &self.actors[i].said);
-                let text = format!("{}: `{}` answers {q} for {p}", self.names[i], act.deed.name);
+                let text =
+                    format!("{}: `{}` returns {q}, in the first world {p}", self.names[i], act.deed.name);
                 return Err(Fault::Differs(text));
             }
         }
@@ -147,7 +148,7 @@ impl Run<'_> {
         }
     }
 
-    /// Adds another world next to the others.
+    /// Adds a world that continues from the state of the first one, unless there are enough.
     fn join(&mut self, kind: Twin) -> Result<(), Fault> {
         if self.actors.len() >= 2 + MOST_TWINS {
             return Ok(());
@@ -162,10 +163,12 @@ impl Run<'_> {
         let number = self.actors.len();
         let line = match kind {
             Twin::Stranger => format!(
-                "let mut twin_{number} = stranger(&world); // which then is done to what the world is"
+                "let mut twin_{number} = stranger(&world); // from here on, all calls are made on it too"
             ),
             Twin::Clone => {
-                format!("let mut twin_{number} = world.clone(); // which then is done to what the world is")
+                format!(
+                    "let mut twin_{number} = world.clone(); // from here on, all calls are made on it too"
+                )
             }
         };
         self.actors[0].line(line);
@@ -201,13 +204,15 @@ impl Run<'_> {
         for (actor, name) in self.actors.iter().zip(&self.names).skip(1) {
             if *actor.world.events() != events {
                 return Err(Fault::Differs(format!(
-                    "{name}: other events, {}",
+                    "{name}: the events differ: {}",
                     unlike(actor.world.events(), &events)
                 )));
             }
             let (first, other) = (self.actors[0].more.events(), actor.more.events());
             if other != first {
-                return Err(Fault::Differs(format!("{name}: tells {other} for {first}")));
+                return Err(Fault::Differs(format!(
+                    "{name}: events beside the world {other}, for the first world {first}"
+                )));
             }
         }
         self.same_state()
@@ -224,10 +229,12 @@ impl Run<'_> {
                         || first.velocity(id) != other.velocity(id)
                         || first.is_awake(id) != other.is_awake(id)
                 });
-                return Err(Fault::Differs(format!("{name}: another state, of {body:?}")));
+                return Err(Fault::Differs(format!(
+                    "{name}: the state of the world differs, first at {body:?}"
+                )));
             }
             if actor.more.state() != self.actors[0].more.state() {
-                return Err(Fault::Differs(format!("{name}: another state beside the world")));
+                return Err(Fault::Differs(format!("{name}: the state beside the world differs")));
             }
         }
         Ok(())
@@ -245,7 +252,7 @@ impl Run<'_> {
                 _ = call!(actor.remove_object(id));
             }
             for id in actor.world.body_ids().collect::<Vec<BodyId>>() {
-                assert!(!is_worn(&actor.world, id), "nothing hangs on it");
+                assert!(!is_worn(&actor.world, id), "no particles or objects may need the body");
                 call!(actor.disown_body(id));
                 call!(actor.remove_body(id));
             }
@@ -267,7 +274,7 @@ fn differing(p: &str, q: &str) -> (String, String) {
 fn unlike(p: &Events, q: &Events) -> String {
     let (p, q) = (format!("{p:#?}"), format!("{q:#?}"));
     let (p, q) = differing(&p, &q);
-    format!("{p} for {q}")
+    format!("{p}, in the first world {q}")
 }
 
 /// Returns the program that repeats a life until its failure.

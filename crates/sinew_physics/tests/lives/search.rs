@@ -9,16 +9,16 @@ use std::io::Write;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Time of a full run.
+/// Duration of a full run.
 const LONG: Duration = Duration::from_secs(600);
-/// Largest number of additional lives of each deed, for calls that the requested lives do not make.
+/// Largest number of additional lives that do each deed, run for calls that the requested lives do not make.
 const RARE: u64 = 8;
-/// Time above which a life is reported as slow.
+/// Running time above which a life is reported as slow.
 const SLOW: Duration = Duration::from_secs(2);
 /// Number of lives between progress messages.
 const PROGRESS: u64 = 500;
 
-/// Lives that a test run covers.
+/// Lives that a test run executes.
 struct Asked {
     /// Seeds, or indices into a list.
     seeds: Range<u64>,
@@ -31,12 +31,13 @@ impl Asked {
     /// (`SINEW_LIVES=17.. SINEW_MINUTES=20`), all seeds for ten minutes (`SINEW_FULL`), or else the listed ones.
     fn of(some: &'static [u64]) -> Self {
         let minutes = std::env::var("SINEW_MINUTES").ok();
-        let minutes = minutes.map(|minutes| minutes.parse::<f32>().expect("SINEW_MINUTES is a number"));
+        let minutes = minutes.map(|minutes| minutes.parse::<f32>().expect("SINEW_MINUTES must be a number"));
         let time = minutes.map(|minutes| Duration::from_secs_f32(60.0 * minutes));
         if let Ok(range) = std::env::var("SINEW_LIVES") {
-            let (lo, hi) = range.split_once("..").expect("SINEW_LIVES is lo..hi or lo..");
-            let hi = if hi.is_empty() { u64::MAX } else { hi.parse().expect("a seed") };
-            let seeds = lo.parse().expect("a seed")..hi;
+            let (lo, hi) = range.split_once("..").expect("SINEW_LIVES must be lo..hi or lo..");
+            let hi =
+                if hi.is_empty() { u64::MAX } else { hi.parse().expect("SINEW_LIVES must contain seeds") };
+            let seeds = lo.parse().expect("SINEW_LIVES must contain seeds")..hi;
             return Self { seeds, listed: &[], time: time.unwrap_or(Duration::MAX) };
         }
         match (std::env::var_os("SINEW_FULL"), time) {
@@ -52,9 +53,9 @@ impl Asked {
     }
 }
 
-/// Returns a failure as text, after shrinking.
+/// Shrinks a failing life and returns its failure and its program as text.
 fn told(seed: u64, outcome: &Outcome) -> String {
-    let failure = outcome.result.as_ref().expect_err("a failure");
+    let failure = outcome.result.as_ref().expect_err("only failures are reported");
     let (least, failure) = shrink::shrunk(&Life::of(seed), failure);
     let lines = run(&least, None, true).program.unwrap_or_default();
     let acts = least.acts.len();
@@ -107,7 +108,7 @@ fn all(asked: &Asked, workers: usize) -> Sum {
     let mut total = Sum::default();
     let sums: Vec<Sum> = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..workers).map(|_| scope.spawn(worker)).collect();
-        workers.into_iter().map(|worker| worker.join().expect("a worker ends")).collect()
+        workers.into_iter().map(|worker| worker.join().expect("a worker thread must not panic")).collect()
     });
     for sum in sums {
         total.lives += sum.lives;
@@ -139,7 +140,7 @@ pub fn search(some: &'static [u64]) {
     let calls: u64 = sum.calls.values().sum();
     let Sum { lives, deeds, rise, failed, next, .. } = &sum;
     eprintln!(
-        "{lives} lives, {deeds} deeds, {calls} calls, {} fail; energy rose by {rise} of what may be; next seed {next}",
+        "{lives} lives, {deeds} deeds, {calls} calls, {} failed; largest rise of energy {rise} of the allowed; next seed {next}",
         failed.len()
     );
     log(&format!(
@@ -151,13 +152,13 @@ pub fn search(some: &'static [u64]) {
         panic!("{} of {lives} lives fail: {failed:?}\n{}", failed.len(), told(*seed, &outcome));
     }
     if sum.lives >= some.len() as u64 {
-        // Only few lives make rare calls.
+        // Few lives make rare calls.
         for seed in 0..RARE {
             if interface::has_all(&sum.calls) {
                 break;
             }
             let outcome = run(&Life::of_each_deed(seed), None, false);
-            assert_eq!(outcome.result, Ok(()), "life {seed} of each deed");
+            assert_eq!(outcome.result, Ok(()), "the life {seed} with each deed must pass");
             for (name, count) in outcome.calls {
                 *sum.calls.entry(name).or_insert(0) += count;
             }

@@ -1,4 +1,4 @@
-//! Shrinks a failing life as long as it fails in the same way.
+//! Removes deeds from a failing life as long as it fails in the same way.
 
 use crate::life::Life;
 use crate::run::{Failure, run};
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 /// Time after which shrinking stops.
 const TIME: Duration = Duration::from_secs(60);
 
-/// Returns a minimal life that fails like the given one, and its failure.
+/// Returns the smallest life found that fails like the given one, and its failure.
 pub fn shrunk(life: &Life, failure: &Failure) -> (Life, Failure) {
     let start = Instant::now();
     let mut least = (life.clone(), failure.clone());
@@ -43,7 +43,7 @@ fn cut_end(least: &mut (Life, Failure)) {
     least.0.acts.retain(|act| act.step <= last);
 }
 
-/// Replaces the smallest life by another if that fails in the same way.
+/// Replaces `least` by `less` if that fails in the same way. Returns whether it did.
 fn fails_alike(less: Life, least: &mut (Life, Failure)) -> bool {
     let Err(found) = run(&less, None, false).result else { return false };
     if !found.fault.is_like(&least.1.fault) {

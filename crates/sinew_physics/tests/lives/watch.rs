@@ -7,28 +7,28 @@ use sinew_math::Vec3;
 use sinew_physics::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Fault of a world.
+/// Fault that a check found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
     Panic(String),
     NotFinite(String),
-    /// A repeated begin, or an end without a begin.
+    /// A contact or overlap that begins twice or ends without a begin.
     Event(String),
-    /// Bodies reported as touching that are far apart, or events that never end.
+    /// Bodies that are reported as touching but are far apart, or touches that never end.
     Touch(String),
     Below(String),
-    /// A limb that flies away, or an open joint.
+    /// A limb that moves away from its character, or an open joint.
     #[allow(dead_code, reason = "worlds without characters have none")]
     Limb(String),
     /// A rise of energy, as a share of the allowed rise.
     Energy(f32, String),
-    /// A world that should be equal differs.
+    /// A difference between worlds that must be equal.
     Differs(String),
 }
 
 impl Fault {
-    /// True if the other fault is of the same kind: a panic with the same words, or a rise of energy at least half as
-    /// large.
+    /// Returns whether the other fault is of the same kind. A panic must have the same words, and a rise of energy must
+    /// be at least half as large.
     pub fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Panic(p), Self::Panic(q)) => words(p) == words(q),
@@ -51,18 +51,19 @@ pub struct Watch {
     shapes: BTreeSet<ShapePair>,
     sensed: BTreeSet<BodyPair>,
     sensed_shapes: BTreeSet<ShapePair>,
-    /// Number of steps for which a pair has been far apart.
+    /// Number of steps for which a touching pair has been far apart.
     apart: BTreeMap<BodyPair, u32>,
     /// Number of steps for which a body has been below the floor without rising, and its height.
     below: BTreeMap<BodyId, (u32, f32)>,
-    /// Number of steps since the last deed that changes something.
+    /// Number of steps since the last deed that changed the world.
     quiet: u32,
     energy: Option<(Energy, f32)>,
     /// Largest rise of energy, as a share of the allowed rise.
     pub rise: f32,
 }
 
-/// Energy that free fall conserves, less the energy, J: symplectic Euler conserves `E + ½ h m g·v`, so a bounce raises `E`.
+/// Returns the difference between the quantity that symplectic Euler conserves in free fall, `E + ½ h m g·v`, and the
+/// energy `E`, J. Because of it a bounce raises `E`.
 fn integrator_lag(world: &World) -> f32 {
     let def = world.def();
     let h = def.dt() / def.substeps as f32;
@@ -70,22 +71,22 @@ fn integrator_lag(world: &World) -> f32 {
     0.5 * h * world.body_ids().map(lag).sum::<f32>()
 }
 
-/// Number of steps after a deed after which energy is checked.
+/// Number of steps after a deed in which energy is not checked.
 const SETTLED: u32 = 30;
-/// Allowed rise of energy in a step, as a share of the kinetic energy or of 1 J/kg, and as a share of the potential
-/// energy, for rounding.
+/// Allowed rise of energy in a step, as a share of the larger of the kinetic energy and 1 J/kg; and, for rounding, as a
+/// share of the potential energy.
 const RISE: f32 = 0.01;
 const ROUNDING: f32 = 1e-5;
-/// Allowed rise while bodies are pressed into each other, as a share of the kinetic energy or of 1 J/kg.
+/// Allowed rise while bodies are pressed into each other, as a share of the larger of the kinetic energy and 1 J/kg.
 const STRAINED: f32 = 2.0;
-/// Overlaps (metres), gaps (metres) and overshoots (radians) above which that limit applies.
+/// Overlap (metres), gap (metres) and overshoot (radians) above which `STRAINED` applies instead of `RISE`.
 const OVERLAP: f32 = 5e-3;
 const GAP: f32 = 1e-3;
 const OVERSHOOT: f32 = 0.02;
-/// Gap above which bodies surely do not touch, metres, and steps within which the end must be reported.
+/// Gap above which bodies surely do not touch, metres; and number of steps within which the end must be reported.
 const FAR: f32 = 0.05;
 const LATE: u32 = 3;
-/// Depth of a whole body below the floor, metres, and steps for which it may be pressed there.
+/// Depth of a whole body below the floor that is a fault, metres; and number of steps for which it is allowed.
 const DEPTH: f32 = 0.05;
 const PRESSED: u32 = 60;
 /// Rise per step of a body that leaves the floor, metres.
@@ -103,12 +104,12 @@ fn noted<T: Ord + Copy + core::fmt::Debug>(
 ) -> Result<(), Fault> {
     for pair in end {
         if !open.remove(pair) {
-            return fault(Fault::Event, format!("{what} ends of {pair:?} without a begin"));
+            return fault(Fault::Event, format!("{what} of {pair:?} ends without a begin"));
         }
     }
     for &pair in begin {
         if !open.insert(pair) {
-            return fault(Fault::Event, format!("{what} begins of {pair:?} twice"));
+            return fault(Fault::Event, format!("{what} of {pair:?} begins twice"));
         }
     }
     Ok(())
@@ -160,7 +161,10 @@ impl Watch {
             if !(world.contains(a) && world.contains(b)) {
                 let late = self.apart.get(&(a, b)).copied().unwrap_or(0) + 1;
                 if late > LATE {
-                    return fault(Fault::Touch, format!("{a:?} and {b:?} touch, but one is gone"));
+                    return fault(
+                        Fault::Touch,
+                        format!("{a:?} and {b:?} are reported as touching, but one was removed"),
+                    );
                 }
                 apart.insert((a, b), late);
                 continue;
@@ -172,7 +176,10 @@ impl Watch {
             if !near {
                 let late = self.apart.get(&(a, b)).copied().unwrap_or(0) + 1;
                 if late > LATE {
-                    return fault(Fault::Touch, format!("{a:?} and {b:?} touch, but are apart: {p:?} {q:?}"));
+                    return fault(
+                        Fault::Touch,
+                        format!("{a:?} and {b:?} are reported as touching, but are apart: {p:?} {q:?}"),
+                    );
                 }
                 apart.insert((a, b), late);
             }
@@ -181,7 +188,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Checks that no body that the floor can carry is below it.
+    /// Checks that no body that the floor should carry is below it.
     fn floor(&mut self, life: &Life, actor: &Actor) -> Result<(), Fault> {
         let world = &actor.world;
         let reach = match life.ground {
@@ -198,7 +205,7 @@ impl Watch {
                     let (steps, height) = self.below.get(&id).copied().unwrap_or((0, center.y));
                     let steps = if center.y > height + RISES { 0 } else { steps + 1 };
                     if steps > PRESSED {
-                        return fault(Fault::Below, format!("{id:?} is at {center} below the floor"));
+                        return fault(Fault::Below, format!("{id:?} is below the floor, at {center}"));
                     }
                     below.insert(id, (steps, center.y));
                 }
@@ -208,7 +215,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Checks that energy rises by no more than the work.
+    /// Checks that energy rises by no more than the work done and the allowed error.
     fn energy(&mut self, actor: &Actor) -> Result<(), Fault> {
         let world = &actor.world;
         let (now, lag) = (world.energy(), integrator_lag(world));
@@ -226,16 +233,18 @@ impl Watch {
             share * sinew_math::max(before.kinetic, mass) + ROUNDING * (all + before.potential.abs());
         self.rise = sinew_math::max(self.rise, rise / allowed);
         if rise > allowed {
-            let text = format!("{before:?} becomes {now:?} with {work:?}: {rise} J of {allowed} J allowed");
+            let text = format!(
+                "the energy rose by {rise} J, allowed {allowed} J: before {before:?}, now {now:?}, work {work:?}"
+            );
             return Err(Fault::Energy(rise / allowed, text));
         }
         Ok(())
     }
 
-    /// Checks that every event that began has ended in an empty world.
+    /// Checks that every contact and overlap that began has ended, after all objects were removed.
     ///
     /// # Errors
-    /// If an event did not end.
+    /// If a contact or overlap did not end.
     pub fn end(&self) -> Result<(), Fault> {
         let open = self.touching.len() + self.shapes.len() + self.sensed.len() + self.sensed_shapes.len();
         if open == 0 {
@@ -243,7 +252,7 @@ impl Watch {
         }
         let text =
             format!("{:?} {:?} {:?} {:?}", self.touching, self.shapes, self.sensed, self.sensed_shapes);
-        fault(Fault::Touch, format!("all bodies are gone, and some touch: {text}"))
+        fault(Fault::Touch, format!("all bodies are removed, but some are reported as touching: {text}"))
     }
 }
 
@@ -268,7 +277,7 @@ fn finite(world: &World, seen: impl Fn(Velocity) -> Velocity) -> Result<(), Faul
     Ok(())
 }
 
-/// True if nothing prevents a body from resting on the floor.
+/// Returns whether nothing prevents a body from resting on the floor.
 fn is_borne(world: &World, id: BodyId, floor: BodyId) -> bool {
     let plain = |shape: ShapeId| {
         world.sensing(shape) == Sensing::Solid
@@ -284,7 +293,7 @@ fn is_borne(world: &World, id: BodyId, floor: BodyId) -> bool {
         && !world.neighbors(id).any(pressed)
 }
 
-/// True if the world has no uncounted source of energy.
+/// Returns whether all sources of energy in the world are counted by the check.
 fn is_passive(world: &World) -> bool {
     let is_still = |id: BodyId| {
         let runs = |shape: ShapeId| {
@@ -308,12 +317,12 @@ fn is_passive(world: &World) -> bool {
         && world.joint_ids().all(is_plain)
 }
 
-/// True if shapes overlap deeply: separating them raises weights.
+/// Returns whether shapes overlap deeply: contacts that separate them lift weights, which adds energy.
 fn is_strained(world: &World) -> bool {
     world.contacts().any(|contact| contact.points().iter().any(|point| point.separation < -OVERLAP))
 }
 
-/// True if joints are open: some cannot close, because a body that nothing can move is elsewhere.
+/// Returns whether joints are open. A joint cannot close if it connects bodies that cannot move.
 fn is_torn(world: &World) -> bool {
     let enabled = |id: &JointId| world.joint(*id).state == JointState::Enabled;
     let open = |id: JointId| world.joint_gap(id) > GAP || world.joint_overshoot(id) > OVERSHOOT;

@@ -146,7 +146,8 @@ impl Character {
     }
 
     /// Computes pose and transform between the last step (`alpha` 0) and the present one (1): `pose` is cleared and
-    /// gets one local transform per joint; returns the character's transform.
+    /// gets one local transform per joint; returns the character's transform. A [loaded](Self::load) character shows
+    /// the present step at every `alpha` until its next update, because snapshots do not contain the last shown pose.
     pub fn interpolated(&self, alpha: f32, pose: &mut Vec<LocalTransform>) -> Transform {
         self.figure.between(self.pose(), alpha, pose)
     }

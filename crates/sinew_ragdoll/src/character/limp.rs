@@ -80,8 +80,7 @@ impl Stillness {
         self.settled &= self.calm_steps > 0;
     }
 
-    /// Returns the share of the full joint friction that applies at this time after the character went limp; 1 or more
-    /// once the friction has reached its full value.
+    /// Returns the share of the full joint friction that applies at this time after going limp; it may exceed 1.
     pub fn friction_share(&self, dt: f32) -> f32 {
         self.steps as f32 * dt / SLACKENS
     }

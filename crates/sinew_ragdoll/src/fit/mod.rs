@@ -133,7 +133,7 @@ fn with_x_turned(shape: &Shape) -> Option<Shape> {
     }
 }
 
-/// Returns the hull scaled by one factor per axis; `None` if the scaled corners are degenerate through rounding.
+/// Returns a hull scaled by one factor per axis; `None` if rounding makes the scaled corners degenerate.
 pub(crate) fn stretched(hull: &Hull, factors: Vec3) -> Option<Shape> {
     let corners: Vec<Vec3> = hull.vertices().iter().map(|&corner| corner * factors).collect();
     Hull::new(&corners).ok().map(|hull| Shape::Hull(Arc::new(hull)))

@@ -6,8 +6,9 @@ use crate::character::{CharacterEvent, State};
 use crate::def::{RagdollBodyDef, RagdollDef};
 use crate::skin::surface::Surface;
 use crate::tuning::{
-    FALLEN_OUT, GROUND_REACH, HEAVY_PART, LIES_FLAT, NEVER_STILL, OFF_FLOOR, ON_A_SIDE, OTHER_SIZE,
-    STARTS_INSIDE, STILL_ON_LEGS, STILL_UPRIGHT, TOPPLES, WALKS_ON_AIR, WALKS_ON_AIR_FOR,
+    FALLEN_OUT, GROUND_REACH, HEAVY_PART, LIES_FLAT, NEVER_STILL, OFF_FLOOR, ON_A_SIDE, OTHER_SIZE, PROPPED,
+    PROPPED_FOR, PROPPED_SLOW, STARTS_INSIDE, STILL_ON_LEGS, STILL_UPRIGHT, TOPPLES, WALKS_ON_AIR,
+    WALKS_ON_AIR_FOR,
 };
 use sinew_anim::{LocalTransform, Rig, Role, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, min, trig};
@@ -103,14 +104,14 @@ fn sides(def: &RagdollDef) -> Option<Fault> {
 }
 
 /// Returns the faults of a baked character: out of the world, inside its static bodies, in the air, never still, still
-/// upright, or drawn at another size during a get-up.
+/// upright, propped on its limbs, or drawn at another size during a get-up.
 ///
 /// # Panics
 /// If the bake does not belong to the input.
 pub fn faults_of_bake(input: &BakeInput<'_>, baked: &Baked) -> Vec<Fault> {
     let fault = fell_out(input, baked).or_else(|| inside(input, baked)).or_else(|| in_air(input, baked));
     let fault = fault.or_else(|| never_still(input, baked));
-    let fault = fault.or_else(|| stays_standing(input, baked));
+    let fault = fault.or_else(|| stays_standing(input, baked)).or_else(|| props_itself(input, baked));
     fault.into_iter().chain(changes_size(input, baked)).collect()
 }
 
@@ -379,6 +380,42 @@ fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
         let reason = format!(
             "limp, it stays upright: {bone} is {ends:.2} m over the floor, {begins:.2} m when it was let go; {} pushes it over",
             stronger(input)
+        );
+        Fault::new(Verdict::Usable, reason)
+    })
+}
+
+/// Returns a fault if a limp human holds its hips up for long while it hardly moves: on hands and feet, on its head, or
+/// kneeling. It may lie down later.
+fn props_itself(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+    let def = &input.character.ragdoll;
+    let hips = (def.bodies[0].role == "hips").then_some(def.bodies[0].joint)?;
+    let high = PROPPED * (input.character.bind()[hips].translation.y);
+    let floor = input.world_from_character.translation.y;
+    let (mut longest, mut run, mut top) = (0.0_f32, 0.0, 0.0_f32);
+    let mut last: Option<(Vec3, f32)> = None;
+    let mut model = Vec::new();
+    for frame in &baked.frames {
+        if frame.state != State::Limp {
+            last = None;
+            continue;
+        }
+        local_to_model(&input.character.rig, &frame.pose, &baked.world_from_model, &mut model);
+        let place = model[hips].translation;
+        if let Some((before, time)) = last {
+            let seconds = frame.time - time;
+            let is_slow = (place - before).length() < PROPPED_SLOW * seconds;
+            run = if is_slow && place.y - floor > high { run + seconds } else { 0.0 };
+            if run > longest {
+                (longest, top) = (run, place.y - floor);
+            }
+        }
+        last = Some((place, frame.time));
+    }
+    (longest > PROPPED_FOR).then(|| {
+        let reason = format!(
+            "limp, it props its hips up {top:.2} m over the floor for {longest:.1} s, longer than {PROPPED_FOR} s; \
+             --hit or --limp-at gives another fall"
         );
         Fault::new(Verdict::Usable, reason)
     })

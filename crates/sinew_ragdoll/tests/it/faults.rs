@@ -1,5 +1,6 @@
 //! Faults that no single metric shows, each injected into the mannequin.
 
+use crate::actor::{floor, shared, walker};
 use sinew_anim::{Hints, Joint, LocalTransform, Primitive, Rig, RigMesh, Skin, analyze, analyze_hinted};
 use sinew_math::{Affine, Rotation, Vec3};
 use sinew_physics::{BodyDef, JointKind, Shape};
@@ -204,6 +205,32 @@ fn upright_body_with_outstretched_arms_is_reported() {
     }
     let found = faults_of_bake(&input, &baked);
     assert!(found.iter().any(|fault| fault.reason.contains("stays upright")), "{found:?}");
+}
+
+/// A limp human that holds its hips half as high as standing for 3 s is reported; one that lies, or that sinks, is not.
+#[test]
+fn limp_human_propped_on_its_limbs_is_reported() {
+    let def = shared(walker());
+    let bodies = [floor()];
+    let input = BakeInput { bodies: &bodies, seconds: 0.2, ..BakeInput::new(def.clone()) };
+    let hips = def.ragdoll.bodies[0].joint;
+    let faults = |height_at: &dyn Fn(f32) -> f32| {
+        let mut baked = bake(&input);
+        let first = baked.frames[0].clone();
+        baked.frames.truncate(1);
+        for step in 1..90 {
+            let mut frame = first.clone();
+            (frame.state, frame.time) = (State::Limp, step as f32 / 30.0);
+            frame.pose[hips].translation.y *= height_at(frame.time);
+            baked.frames.push(frame);
+        }
+        faults_of_bake(&input, &baked)
+    };
+    let propped = faults(&|_| 0.5);
+    assert!(propped.len() == 1 && propped[0].at_most == Verdict::Usable, "{propped:?}");
+    assert!(propped[0].reason.contains("props its hips up"), "{propped:?}");
+    assert_eq!(faults(&|_| 0.2), []);
+    assert_eq!(faults(&|time| 1.0 - time / 3.0), []);
 }
 
 /// The mannequin is in a platform up to its hips, in a wall, or walks into a wall by its clip.

@@ -322,11 +322,14 @@ fn ask_character(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     say(&mut code_text, "body_index", &index);
     say(&mut code_text, "animator", &character.animator().tracks().collect::<Vec<_>>());
     let mut pose: Vec<LocalTransform> = Vec::new();
-    let shown = character.interpolated(alpha, &mut pose);
+    // A loaded character interpolates only after its first step; the poses at the end of a step are equal at once.
+    let _ = character.interpolated(alpha, &mut pose);
+    let shown = character.interpolated(1.0, &mut pose);
     say(&mut code_text, "interpolated", &(shown, pose));
     let mut palette: Vec<[f32; 12]> = Vec::new();
     if !character.def().rig.skins.is_empty() {
         character.skin_palette(0, alpha, &mut palette);
+        character.skin_palette(0, 1.0, &mut palette);
     }
     say(&mut code_text, "skin_palette", &palette);
     calls.extend(["Character::held", "Character::has_body", "Character::body_index", "Character::animator"]);

@@ -17,11 +17,11 @@ const PIER_HALF: Vec3 = Vec3::new(0.6, 0.25, 0.5);
 const BLOCK_HALF: Vec3 = Vec3::new(0.3, 0.15, 0.25);
 const MASONRY: Material = Material { friction: 0.6, restitution: 0.0, rolling: 0.0, ..Material::DEFAULT };
 
-/// A catenary arch of `stones` stones (an odd number) without mortar on two level piers, with blocks on top of the keystone. Order: the
-/// piers, the stones from −x to +x, the blocks.
+/// A catenary arch of `stones` stones (an odd number) without mortar on two level piers, with blocks on top of the
+/// keystone. Order: the piers, the stones from −x to +x, the blocks.
 ///
-/// The centre line of the stones is the line of thrust of a chain turned upside down (Hooke 1675), so the own weight presses each stone
-/// squarely against the next.
+/// The centre line of the stones is an inverted hanging chain, which is the line of thrust of the arch's own weight
+/// (Hooke 1675). The thrust is therefore perpendicular to the joints between the stones.
 pub fn arch(stones: usize, blocks: usize) -> Blueprint {
     let mut scene = Blueprint::new("arch", Sleeping::On, 600);
     for side in [-1.0, 1.0] {
@@ -31,7 +31,7 @@ pub fn arch(stones: usize, blocks: usize) -> Blueprint {
     for ends in joints(stones).windows(2) {
         let middle = 0.5 * (ends[0].middle + ends[1].middle);
         let corners: Vec<Vec3> = ends.iter().flat_map(Joint::corners).map(|at| at - middle).collect();
-        let stone = Shape::Hull(Arc::new(Hull::new(&corners).expect("a stone is a solid")));
+        let stone = Shape::Hull(Arc::new(Hull::new(&corners).expect("a stone's corners span a solid")));
         scene.body(made_of(body(stone, middle), MASONRY));
     }
     // The keystone's top is horizontal.
@@ -64,8 +64,8 @@ impl Joint {
     }
 }
 
-/// The joints of `stones` stones, from −x to +x: perpendicular to the catenary and equally spaced along it, except for the level joints
-/// at the feet of the arch.
+/// The joints of `stones` stones, from −x to +x: perpendicular to the catenary and equally spaced along it, except for
+/// the level joints at the feet of the arch.
 ///
 /// With `s` along the catenary from its crown `y = −√(a² + s²)`, the outward normal is along `(s, a)`.
 pub(crate) fn joints(stones: usize) -> Vec<Joint> {

@@ -1,4 +1,5 @@
-//! Weights on chains of light links, which iterative solvers cannot hold together. Without collisions and damping.
+//! Weights on chains of light links, whose joints iterative solvers cannot keep closed. There are no collisions and no
+//! damping.
 
 use super::{Blueprint, weighed_ghost};
 use crate::parts::{ball, cuboid, hook, level_rod};
@@ -61,7 +62,8 @@ pub fn chain_100_links() -> Blueprint {
     scene
 }
 
-/// A horizontal rope of 19 links of 1 m and 1 kg on a fixed link, with a block of 30 m and 1,800 kg at its end, released from rest.
+/// A horizontal rope of 19 links of 1 m and 1 kg on a fixed link, with a block of 30 m and 1,800 kg at its end,
+/// released from rest.
 ///
 /// Sizes and masses of `HeavyRope` in the demonstration of Augmented Vertex Block Descent (Giles, Diaz & Yuksel 2025),
 /// 0.5 m thick.

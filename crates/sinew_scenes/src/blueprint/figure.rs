@@ -82,8 +82,8 @@ pub fn rain() -> Blueprint {
 
 /// 8 humanoids with joint friction fall from 15 m on two by two cells of 15 m, each with a tilted box at its centre.
 ///
-/// Modelled on Box3D's falling ragdolls, which verify repeatability by the step at which all sleep. Those fall on meshes, and have springs
-/// in their joints.
+/// Modelled on Box3D's falling ragdolls, which verify repeatability by the step at which all sleep. Those fall on
+/// meshes, and have springs in their joints.
 pub fn ragdolls() -> Blueprint {
     const CELL: f32 = 15.0;
     /// Friction torque of a joint, N·m.

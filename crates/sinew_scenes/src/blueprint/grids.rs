@@ -1,4 +1,4 @@
-//! Nets: joints in loops. Nothing collides.
+//! Nets of joints that form loops, without collisions.
 
 use super::{Blueprint, weighed_ghost};
 use crate::parts::{ball, body, fixed, ghost};
@@ -7,7 +7,8 @@ use sinew::physics::{BodyDef, BodyKind, Shape, Sleeping};
 
 /// 100 × 100 balls 1 m apart in a vertical plane, neighbours joined halfway between them, the top row fixed, at rest.
 ///
-/// Box3D's `joint_grid`: 9,900 balls of radius 0.4 m move. It has 19,701 ball joints: the 99 of 19,800 between fixed balls are omitted.
+/// Box3D's `joint_grid`: 9,900 balls of radius 0.4 m move. It has 19,701 ball joints: the 99 of 19,800 between fixed
+/// balls are omitted.
 pub fn joint_grid() -> Blueprint {
     joint_grid_of(100)
 }
@@ -29,8 +30,8 @@ pub fn joint_grid_of(side: usize) -> Blueprint {
     scene
 }
 
-/// A net of 8 × 8 knots of 0.1 kg with rods of 0.5 m and 0.1 kg between neighbours, released to sag from its two upper corners, with 20 kg
-/// below the midpoint of its lower edge: 112 rods, 225 ball joints, 49 loops.
+/// A net of 8 × 8 knots of 0.1 kg with rods of 0.5 m and 0.1 kg between neighbours, released to sag from its two upper
+/// corners, with 20 kg below the midpoint of its lower edge: 112 rods, 225 ball joints, 49 loops.
 pub fn net() -> Blueprint {
     const SIDE: usize = 8;
     const SPACING: f32 = 0.5;

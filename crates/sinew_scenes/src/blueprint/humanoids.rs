@@ -1,4 +1,4 @@
-//! The ragdoll of the mannequin, in a form that other engines and MuJoCo can build.
+//! The ragdoll of the mannequin as plain data, from which other engines and MuJoCo can build it.
 
 use super::{Blueprint, BlueprintJoint};
 use crate::mannequin::mannequin;
@@ -8,7 +8,7 @@ use sinew::math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, cla
 use sinew::physics::{BodyDef, JointKind, Material, Shape, ShapeDef, Sleeping};
 use sinew::ragdoll::{BuildOptions, RagdollDef, RagdollJointDef, build};
 
-/// Friction coefficient of all bodies in these scenes: the one of flesh.
+/// Friction coefficient of all bodies in these scenes: that of a ragdoll's bodies.
 const FRICTION: f32 = 0.7;
 
 /// Initial gap between a humanoid and the ground, metres.
@@ -55,7 +55,8 @@ fn start_angle(kind: JointKind) -> f32 {
 enum Limits {
     /// The ragdoll's own limits and joint friction.
     Own,
-    /// Limits that every engine supports: round cones with the mean width of the ellipse, hinges, and no joint friction.
+    /// Limits that every engine supports: round cones with the mean width of the ellipse, hinges, and no joint
+    /// friction.
     Common,
 }
 

@@ -1,4 +1,4 @@
-//! Jointed loads that lie on, hang from and lean on standing bodies.
+//! Loads of several jointed bodies that lie on, hang from or lean on standing bodies.
 
 use super::figure::figure_at;
 use super::{Blueprint, BlueprintJoint, stack_mass_ratio};
@@ -20,7 +20,8 @@ pub(crate) fn pair(scene: &mut Blueprint, place: Transform, half: f32, mass: f32
     scene.ball(a, b, place.point(Vec3::Y * side.y));
 }
 
-/// Adds a rope through these points, with one link between neighbouring points and total mass `mass`. Returns its first link.
+/// Adds a rope through these points, with one link between neighbouring points and total mass `mass`. Returns its first
+/// link.
 pub(crate) fn rope(scene: &mut Blueprint, points: &[Vec3], radius: f32, mass: f32) -> usize {
     let first = scene.bodies.len();
     let links = points.len() - 1;
@@ -56,8 +57,8 @@ pub(crate) fn hanging(scene: &mut Blueprint, from: usize, at: Vec3, link: f32, m
     scene.ball(from, first, at);
 }
 
-/// Adds a plank of two welded halves. The plank stands on the plane y = 0 and leans toward −x by `degrees` from the vertical, and its upper
-/// edge touches a wall at `touch`; this determines its length.
+/// Adds a plank of two welded halves. The plank stands on the plane y = 0 and leans toward −x by `degrees` from the
+/// vertical, and its upper edge touches a wall at `touch`; this determines its length.
 pub(crate) fn leaning(scene: &mut Blueprint, touch: Vec3, degrees: f32, mass: f32) {
     let length = touch.y / trig::cos(degrees.to_radians());
     let half = Vec3::new(0.04, 0.25, 0.1) * length;

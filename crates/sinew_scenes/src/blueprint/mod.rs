@@ -113,8 +113,8 @@ impl Blueprint {
         self
     }
 
-    /// Perturbs the start: each moving body is displaced by up to `most` metres, depending on `seed`. Joints move with their second bodies.
-    /// Heaps are chaotic: results differ between starts.
+    /// Perturbs the start: each moving body is displaced by up to `most` metres, depending on `seed`. Joints move with
+    /// their second bodies. Heaps are chaotic: results differ between starts.
     pub fn perturbed(mut self, seed: u64, most: f32) -> Self {
         let mut random = Random::new(seed);
         let aside: Vec<Vec3> = self.bodies.iter().map(|_| in_box(&mut random, -most, most)).collect();
@@ -169,8 +169,8 @@ pub fn in_box(random: &mut Random, lo: f32, hi: f32) -> Vec3 {
     Vec3::new(next(), next(), next())
 }
 
-/// Returns a uniform random rotation (Shoemake 1992). Uses exactly three numbers, without rejection, so that other programs can draw the
-/// same.
+/// Returns a uniform random rotation (Shoemake 1992). Uses exactly three numbers, without rejection, so that other
+/// programs can draw the same.
 pub fn rotation(random: &mut Random) -> Rotation {
     let [u, v, w] = [random.unit(), random.unit(), random.unit()];
     let (sin_v, cos_v) = trig::sin_cos(core::f32::consts::TAU * v);

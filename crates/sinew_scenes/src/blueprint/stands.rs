@@ -51,8 +51,8 @@ pub fn jenga(levels: usize) -> Blueprint {
     scene
 }
 
-/// A house of cards 0.4 m long, 0.2 m wide and 2 mm thick, with `pairs` leaning pairs in the lowest storey and one fewer in each storey
-/// above; friction 0.7.
+/// A house of cards 0.4 m long, 0.2 m wide and 2 mm thick, with `pairs` leaning pairs in the lowest storey and one
+/// fewer in each storey above; friction 0.7.
 pub fn cards(pairs: usize) -> Blueprint {
     const SURFACE: Material = Material { friction: 0.7, ..Material::DEFAULT };
     let mut scene = Blueprint::new("cards", Sleeping::On, 600);
@@ -81,8 +81,8 @@ const PITCH: f32 = 0.38;
 
 /// Poses of all cards, storey by storey: x along their thickness, y along their length.
 ///
-/// Each lying card except the first rests with its left end on the end of the previous one, like shingles, and the pairs on it lean
-/// accordingly.
+/// Each lying card except the first rests with its left end on the right end of the previous one, like shingles. The
+/// pairs on it are tilted by the same angle.
 fn house_of_cards(pairs: usize) -> Vec<Transform> {
     let flat = Rotation::from_axis_angle(Vec3::Z, FRAC_PI_2);
     let place = |i: usize| Vec3::X * (PITCH * (i as f32 - 0.5 * (pairs - 1) as f32));

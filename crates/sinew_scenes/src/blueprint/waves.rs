@@ -1,4 +1,5 @@
-//! Heaps on wavy ground, modelled on Box3D's wave pile and mesh drop, which verify repeatability by the step at which all bodies sleep.
+//! Heaps on wavy ground, modelled on Box3D's wave pile and mesh drop, which verify repeatability by the step at which
+//! all bodies sleep.
 
 use super::{Blueprint, in_box, rotation};
 use crate::parts::{ball, body, cuboid, fixed, made_of};
@@ -77,11 +78,11 @@ fn rock(random: &mut Random) -> Hull {
     const CORNERS: usize = 14;
     let half_axes = in_box(random, 0.25, 0.5);
     let corners: Vec<Vec3> = (0..CORNERS).map(|_| half_axes * (rotation(random) * Vec3::Y)).collect();
-    Hull::new(&corners).expect("so many points are a solid")
+    Hull::new(&corners).expect("the points span a solid")
 }
 
-/// Rolling resistance, as a share of the radius of a rolling body; shapes without roundings take a quarter of the resistance of their
-/// largest inscribed ball.
+/// Rolling resistance as a share of the radius of a rolling body. Shapes without roundings have a quarter of the
+/// resistance of their largest inscribed ball.
 const ROLLING: f32 = 0.3;
 
 fn rolling(radius: f32) -> Material {
@@ -125,7 +126,7 @@ impl Waves {
             heights: self.heights().collect(),
             holes: Vec::new(),
         };
-        let field = HeightField::new(def).expect("waves are a height field");
+        let field = HeightField::new(def).expect("the height field is valid");
         fixed(body(Shape::HeightField(Arc::new(field)), self.corner()))
     }
 
@@ -136,7 +137,7 @@ impl Waves {
         let cells = (0..side - 1).flat_map(|row| (0..side - 1).map(move |column| row * side + column));
         let halves = |a: u32| [[a, a + side, a + side + 1], [a, a + side + 1, a + 1]];
         let triangles: Vec<[u32; 3]> = cells.flat_map(halves).collect();
-        let mesh = Mesh::new(&vertices, &triangles).expect("waves are a mesh");
+        let mesh = Mesh::new(&vertices, &triangles).expect("the mesh is valid");
         fixed(body(Shape::Mesh(Arc::new(mesh)), self.corner()))
     }
 }

@@ -51,7 +51,7 @@ impl Cast {
     }
 
     fn built(&self, clip: &Clip) -> BuiltClip {
-        BuiltClip::build(clip, &self.rig, &ClipBuildOptions::default()).expect("clips made by code are good")
+        BuiltClip::build(clip, &self.rig, &ClipBuildOptions::default()).expect("the clip fits the rig")
     }
 
     /// Index of the joint of that name.
@@ -127,8 +127,8 @@ impl Actor {
     }
 }
 
-/// Number of world steps that the animation has followed. After a world was restored during a run, the animation
-/// catches up from its start.
+/// Number of world steps that an animation has followed. After a world is restored during a run, the animation catches
+/// up from its start.
 #[derive(Default)]
 pub(crate) struct Gone(u64);
 

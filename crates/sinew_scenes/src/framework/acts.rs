@@ -13,14 +13,14 @@ pub enum Act {
     Play(u32),
     /// Falls limp, and stays down.
     Limp,
-    /// Is moved by its muscles, which follow its clips and keep its balance.
+    /// Is driven by its muscles, which follow its clips and keep its balance.
     Powered,
     /// Gets up, and follows its own clips.
     GetUp,
 }
 
-/// Time in which a character that is down stands up to play a clip, seconds. Shorter: a visible jerk. Longer: the user
-/// waits.
+/// Time in which a character that is down stands up to play a clip, seconds. Shorter: the character visibly jerks.
+/// Longer: the user waits.
 const INTO_STANDING: f32 = 0.5;
 /// Time in which a clip blends in, seconds.
 const FADE: f32 = 0.25;

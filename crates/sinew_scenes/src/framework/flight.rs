@@ -5,8 +5,8 @@ use crate::parts::GRAVITY;
 use sinew::math::{Vec3, trig};
 use sinew::physics::{BodyId, World};
 
-/// Measures how the momentum of some bodies changes until a body hits another one. Only the bodies' weight may
-/// change the momentum; forces of joints and contacts between them may not.
+/// Measures how the total momentum of some bodies changes until one of them hits another body. Only the bodies' weight
+/// must change this momentum, not the forces of joints and contacts between them.
 pub(crate) struct Flight {
     bodies: Vec<BodyId>,
     mass: f32,

@@ -15,16 +15,16 @@ use sinew::ragdoll::Character;
 
 /// The part of a scene that accompanies its world.
 pub trait Script: Send {
-    /// Runs before each step and moves scripted bodies, such as those that follow an animation. Like [`after_step`](Self::after_step), it
-    /// depends on the world alone.
+    /// Runs before each step and moves scripted bodies, such as those that follow an animation. Like
+    /// [`after_step`](Self::after_step), it depends on the world alone.
     fn before_step(&mut self, _world: &mut World) {}
 
-    /// Runs after each step: measures, and applies impulses for the next step. The impulses depend on the world alone, so that a restored
-    /// world continues as the saved one did.
+    /// Runs after each step: measures, and applies impulses for the next step. The impulses depend on the world alone,
+    /// so that a restored world continues as the saved one did.
     fn after_step(&mut self, _world: &mut World) {}
 
-    /// [`after_step`](Self::after_step) for a host that measures time: `done` is called after each part of the work. The work and its order
-    /// are the same.
+    /// [`after_step`](Self::after_step) for a host that measures time: `done` is called after each part of the work.
+    /// The work and its order are the same.
     fn after_step_in_parts(&mut self, world: &mut World, _done: &mut dyn FnMut(Part)) {
         self.after_step(world);
     }
@@ -81,11 +81,12 @@ pub trait Script: Send {
         &[]
     }
 
-    /// Called when a user pushes a kinematic body with an impulse, N·s, at a point, world space. An impulse does not move such a body, but
-    /// a character falls.
+    /// Called when a user pushes a kinematic body with an impulse, N·s, at a point, world space. An impulse does not
+    /// move such a body, but a character falls.
     fn strike(&mut self, _world: &mut World, _body: BodyId, _impulse: Vec3, _point: Vec3) {}
 
-    /// Sets the velocity of the character that a user may control, from the next step on, m/s, world space. Most scenes have none.
+    /// Sets the velocity of the character that a user may control, from the next step on, m/s, world space. Most scenes
+    /// have none.
     fn steer(&mut self, _way: Vec3) {}
 
     /// Position of the character that a user may control, metres, world space.
@@ -219,8 +220,9 @@ impl Instance {
         self.step_in_parts(runner, profiler, &mut |_| {});
     }
 
-    /// Takes one step, like [`step_with`](Self::step_with). `done` is called after the world's step (a part named [`WORLD`](Self::WORLD),
-    /// for all its bodies) and after each further part of the work, so that a host can measure the time of each.
+    /// Takes one step, like [`step_with`](Self::step_with). `done` is called after the world's step (a part named
+    /// [`WORLD`](Self::WORLD), for all its bodies) and after each further part of the work, so that a host can measure
+    /// the time of each.
     pub fn step_in_parts(
         &mut self,
         runner: &dyn TaskRunner,

@@ -24,7 +24,7 @@ impl Expected {
     }
 }
 
-/// A metric of a run, computed from queries to the world alone. Its name ends in its unit: `_m`, `_s`, `_j`, `_deg` and
+/// A metric of a run, computed only from queries of the world. Its name ends in its unit: `_m`, `_s`, `_j`, `_deg` and
 /// so on; shares and counts have none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {

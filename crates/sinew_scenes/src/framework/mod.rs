@@ -1,4 +1,4 @@
-//! Framework of scenes: their building blocks and shared measurements.
+//! Framework of the scenes: the interface of a scene, its settings and metrics, and measurements that scenes share.
 
 pub(crate) mod actors;
 pub(crate) mod acts;

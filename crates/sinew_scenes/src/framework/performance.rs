@@ -21,7 +21,10 @@ impl Performance {
     pub fn of(document: BvhDocument) -> Result<Self, String> {
         let BvhDocument { rig, clip, rest_pose, .. } = document;
         if clip.duration > LONGEST {
-            return Err(format!("a motion of {:.0} s; a scene takes up to {LONGEST} s", clip.duration));
+            return Err(format!(
+                "the motion lasts {:.0} s; a scene accepts at most {LONGEST} s",
+                clip.duration
+            ));
         }
         let (analysis, _) = stand(&rig, &clip, rest_pose.as_deref()).map_err(|error| error.to_string())?;
         let performance = Self { rig, clip, analysis };
@@ -38,8 +41,8 @@ impl Performance {
 
     pub fn fitted(&self, rig: &Rig) -> Result<Retargeted, RetargetError> {
         let analysis =
-            analyze_skeleton(rig, &rest_pose(rig)).expect("what is made of the mannequin has bones");
-        // Fix the unit, so that a giant does not count as a human in other units.
+            analyze_skeleton(rig, &rest_pose(rig)).expect("a rig made from the mannequin has bones");
+        // Set the unit explicitly. Otherwise a giant would be taken for a human in a file with other units.
         let analysis = analysis.with_unit_scale(1.0);
         let (from, to) =
             (Body { rig: &self.rig, analysis: &self.analysis }, Body { rig, analysis: &analysis });

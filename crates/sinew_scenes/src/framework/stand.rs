@@ -15,7 +15,7 @@ pub(crate) struct Bars {
     pub shift: f64,
     /// Sideways motion of the last body, metres.
     pub top_drift: f64,
-    /// Downward motion of any body, metres: contacts sink by the weight above them.
+    /// Downward motion of any body, metres. Soft contacts sink under the weight above them.
     pub sink: f64,
     /// Rotation of any body, degrees.
     pub turn: f64,
@@ -42,7 +42,7 @@ impl Stand {
     pub fn new(world: &World, bodies: &[BodyId], flight: Flight, bars: Bars) -> Self {
         let placed: Vec<_> = bodies.iter().map(|&id| (id, center(world, id))).collect();
         let centers = placed.iter().map(|(_, at)| Aabb::around(at.translation, Vec3::ZERO));
-        let bounds = centers.reduce(|a, b| a.merge(&b)).expect("a body stands");
+        let bounds = centers.reduce(|a, b| a.merge(&b)).expect("at least one body stands");
         let bounds = bounds.expand(0.1 * bounds.half_extents().length());
         Self { placed, flight, bars, bounds, asleep: None }
     }
@@ -80,7 +80,7 @@ impl Script for Stand {
 
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let Bars { shift: most_shift, top_drift, sink, turn, depth, asleep } = self.bars;
-        let &(top, from) = self.placed.last().expect("a body stands");
+        let &(top, from) = self.placed.last().expect("at least one body stands");
         let at_most = |name, value: f32, most: f64| Metric::new(name, value, Expected::AtMost(most));
         vec![
             self.flight.metric(),

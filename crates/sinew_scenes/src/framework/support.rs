@@ -5,7 +5,8 @@ use crate::parts::GRAVITY;
 use sinew::math::{Vec3, max};
 use sinew::physics::{BodyKind, JointId, World};
 
-/// Joints to static bodies of a world without contacts: they carry the world's weight and the change of its momentum.
+/// Joints to static bodies in a world without contacts. The sum of their forces must equal the world's weight plus the
+/// rate of change of its momentum.
 pub(crate) struct Support {
     /// Joints to static bodies; true if the joint's first body is the static one.
     joints: Vec<(JointId, bool)>,

@@ -1,6 +1,6 @@
 //! Angles of more than a full turn.
 
-/// Sums the motion of an angle that moves by less than half a turn a step.
+/// Sum of the changes of an angle that changes by less than half a turn per step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Turn {
     last: Option<f32>,

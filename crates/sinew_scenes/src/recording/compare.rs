@@ -14,7 +14,8 @@ pub enum Difference {
     State {
         /// Number of steps taken.
         step: u64,
-        /// First body whose pose differs, with both poses; `None` if no pose differs, or if neither recording can be replayed.
+        /// First body whose pose differs, with both poses; `None` if no pose differs, or if neither recording can be
+        /// replayed.
         body: Option<(BodyId, [Transform; 2])>,
     },
     /// One recording has more steps; all common steps are equal.

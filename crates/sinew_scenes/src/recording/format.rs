@@ -9,7 +9,7 @@ use sinew::physics::{BodyId, Quality, Sleeping};
 
 /// First bytes of the file.
 const MAGIC: &[u8; 8] = b"sinewrec";
-/// Version of the format. Additions increase it. Not 3, which a flipped bit would turn into 2.
+/// Version of the format. It increases with each addition. 3 was skipped, because one flipped bit would turn it into 2.
 pub const FORMAT: u32 = 4;
 /// Version without instructions to characters and solver settings, which can still be read.
 const WITHOUT_ACTS: u32 = 2;

@@ -81,10 +81,11 @@ pub enum Operation {
     },
 }
 
-/// Frequency at which connected bodies swing on the hand, Hz. Lower: the bodies lag behind the hand. Higher: the bodies jerk.
+/// Frequency at which connected bodies swing on the hand, Hz. Lower: the bodies lag behind the hand. Higher: the bodies
+/// jerk.
 const HERTZ: f32 = 2.5;
-/// Force of a hand, in weights of the connected bodies (at 9.81 m/s²). Lower: the hand cannot lift a body under others. Higher:
-/// the hand tears joints.
+/// Largest force of a hand, as a multiple of the connected bodies' weight (at 9.81 m/s²). Lower: the hand cannot lift a
+/// body that lies under others. Higher: the hand pulls joints apart.
 const STRENGTH: f32 = 12.0;
 /// Weight of a kilogram, N.
 const WEIGHT: f32 = 9.81;

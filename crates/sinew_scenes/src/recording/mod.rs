@@ -1,8 +1,8 @@
 //! Recordings: the operations on a scene and the resulting states, step by step.
 //!
-//! A recording holds the scene with its settings, the [`Operation`]s before each step, the hash of the world's state after each step, and
-//! sometimes the poses of all bodies. The version that made a recording replays it to the same bits, and finds the first step that
-//! differs. Any other version can still show the poses.
+//! A recording holds the scene with its settings, the [`Operation`]s before each step, the hash of the world's state
+//! after each step, and sometimes the poses of all bodies. The version that made a recording replays it to the same
+//! bits, and finds the first step that differs. Any other version can still show the poses.
 //!
 //! ```
 //! use sinew_scenes::recording::{Recorder, Recording, Replay};

@@ -106,8 +106,8 @@ impl Recorder {
         }
     }
 
-    /// Returns to a state of this run. Returns false if the scene cannot be restored; the run is then unusable. Metrics are
-    /// those of the whole run, except those that a scene saves.
+    /// Returns to a state of this run. Returns false if the scene cannot be restored; the run is then unusable. Metrics
+    /// are those of the whole run, except those that a scene saves.
     pub fn go_to(&mut self, mark: &RecorderMark) -> bool {
         self.hands = mark.hands.clone();
         self.recording = mark.recording.clone();
@@ -218,8 +218,8 @@ impl Replay {
         loaded.is_ok() && self.instance.world().step_count() == mark.step
     }
 
-    /// First body whose pose differs from the key frame of this step, or that exists in only one of the two; `None` without a difference or
-    /// a key frame.
+    /// First body whose pose differs from the key frame of this step, or that exists in only one of the two; `None`
+    /// without a difference or a key frame.
     pub fn misplaced(&self) -> Option<BodyId> {
         let world = self.instance.world();
         let taken = world.step_count();

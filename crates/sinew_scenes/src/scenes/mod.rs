@@ -1,7 +1,7 @@
 //! Named scenarios: each builds a world, drives it, and verifies the physics by metrics.
 //!
 //! ```
-//! let scene = sinew_scenes::scenes::find("pendulum").expect("it is one of the registry's");
+//! let scene = sinew_scenes::scenes::find("pendulum").expect("the scene is registered");
 //! let mut settings = scene.settings();
 //! settings.assign("amplitude=30")?;
 //! let mut run = scene.start(&settings);

@@ -1,5 +1,5 @@
-//! Random walks of a capsule over uneven ground, for Sinew's mover and others: the ground, the wanted velocities, and a flood fill that
-//! finds the reachable positions.
+//! Random walks of a capsule over uneven ground, for Sinew's mover and others: the ground, the wanted velocities, and a
+//! flood fill that finds the reachable positions.
 
 mod room;
 mod terrain;
@@ -18,7 +18,8 @@ const TURNS: usize = 20;
 const SETTLES: usize = 60;
 /// Depth from which a capsule counts as inside a body, metres.
 pub const INSIDE: f32 = 0.005;
-/// Displacement in a step from which a walk may have gone through a body, metres: a smaller one leaves the capsule's axis on the same side.
+/// Displacement in a step from which the walk checks whether the capsule has passed through a body, metres. A smaller
+/// displacement leaves the capsule's axis on the same side.
 const LONG: f32 = 0.25;
 
 /// A walker: Sinew's mover, or the controller of another engine.
@@ -78,7 +79,7 @@ impl Walker for Ours {
 pub struct Tally {
     /// Free space around a capsule that counts as room, metres. Default 8 mm: more than a mover's skin.
     pub margin: f32,
-    /// Number of walks, and of their steps.
+    /// Number of walks.
     pub walks: usize,
     /// Number of steps of all walks, without those to reachable positions.
     pub steps: usize,
@@ -88,9 +89,9 @@ pub struct Tally {
     pub deepest: f32,
     /// Number of walks that went through a body or under the ground, and ended there.
     pub through: usize,
-    /// Number of walks that ended on ground from which a flood searched for room.
+    /// Number of walks that ended on the ground, from which a flood fill searched for reachable positions.
     pub floods: usize,
-    /// Number of positions found by all flood fills.
+    /// Sum over all walks of the positions found by each walk's largest flood fill.
     pub places: usize,
     /// Number of flood fills whose last position was not reached.
     pub stuck: usize,
@@ -162,10 +163,14 @@ impl Tally {
             let is_through = (now - before).length() > LONG && on.parts(before, now);
             if is_through || now.y < -0.01 {
                 self.through += 1;
-                return Err(format!("went through a body from {before} to {now}"));
+                return Err(format!("the capsule passed through a body between {before} and {now}"));
             }
         }
-        if worst > INSIDE { Err(format!("{worst} m inside at {place}")) } else { Ok(()) }
+        if worst > INSIDE {
+            Err(format!("the capsule is {worst} m inside a body at {place}"))
+        } else {
+            Ok(())
+        }
     }
 
     /// Lets a walker stand still, and sends it to the farthest reachable position; returns where it is stuck. A walker

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, VecDeque};
 /// Side of a cell, metres, and number of cells searched in each direction.
 const CELL: f32 = 0.1;
 const FAR: i32 = 12;
-/// Share of the step height and of the slope limit that the flood uses.
+/// Share of the mover's step height and slope limit within which the flood fill moves.
 const SHARE: f32 = 0.9;
 /// Distances behind an edge, and above and below the edge, at which a tread is searched, metres.
 const BEHIND_EDGE: f32 = 0.02;
@@ -29,8 +29,8 @@ pub struct Room {
 }
 
 impl Room {
-    /// Floods the cells around standing feet. `margin` is the free space around the capsule that counts as room, metres; it must exceed the
-    /// mover's own skin.
+    /// Floods the cells around standing feet. `margin` is the free space around the capsule that counts as room,
+    /// metres; it must exceed the mover's own skin.
     pub fn around(on: &Terrain, feet: Vec3, margin: f32) -> Self {
         let mut room = Self { places: vec![feet], before: vec![0] };
         let mut cells = BTreeMap::from([((0, 0), 0)]);
@@ -55,7 +55,7 @@ impl Room {
     }
 
     /// Number of positions, at least 1.
-    #[expect(clippy::len_without_is_empty, reason = "the place it stands at is always there")]
+    #[expect(clippy::len_without_is_empty, reason = "it always contains the start position")]
     pub fn len(&self) -> usize {
         self.places.len()
     }

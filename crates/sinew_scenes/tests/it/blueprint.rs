@@ -14,7 +14,7 @@ fn check(scene: &Blueprint, bodies: usize, dynamic: usize, joints: usize) {
         assert!((world.transform(id).translation - def.position).length() < 1e-5, "{name}");
     }
     for &joint in &joint_ids {
-        // A few units in the last place at 100 m from the origin.
+        // The tolerance is a few units in the last place of a position 100 m from the origin.
         assert!(world.joint_gap(joint) < 5e-5, "{name}: a gap of {} m", world.joint_gap(joint));
         assert!(world.joint_overshoot(joint) < 1e-3, "{name}");
     }
@@ -54,7 +54,8 @@ fn blueprints_have_their_described_sizes() {
     assert_eq!((full.bodies.len(), full.dynamic().count(), full.joints.len()), (10_000, 9_900, 19_800 - 99));
 }
 
-/// Returns the largest initial depth of a moving body in a fixed one or in a moving one at least `stride` indices away, metres.
+/// Returns the largest initial depth of a moving body in a fixed one or in a moving one at least `stride` indices away,
+/// metres.
 fn overlap(scene: &Blueprint, stride: usize) -> f32 {
     /// Distance of their centres above which two bodies do not touch, metres.
     const NEAR: f32 = 1.1;
@@ -79,17 +80,17 @@ fn figures_and_boxes_of_heaps_start_apart() {
     let heaps = [(blueprint::humanoid_lying(), 19), (blueprint::humanoid_pile(33), 19)];
     for (scene, stride) in heaps.into_iter().chain([(blueprint::box_heap(6, 6), 1)]) {
         let overlap = overlap(&scene, stride);
-        assert!(overlap < 1e-3, "{}: {overlap} m", scene.name);
+        assert!(overlap < 1e-3, "{}: bodies overlap by {overlap} m at the start", scene.name);
     }
 }
 
 #[test]
-fn another_start_is_nearly_the_same_and_fits() {
+fn perturbed_start_differs_slightly_and_joints_fit() {
     let scene = blueprint::humanoid_pile(10);
     let moved = scene.clone().perturbed(3, 1e-4);
     let apart = |place: usize| (scene.bodies[place].position - moved.bodies[place].position).length();
     assert!(scene.dynamic().all(|place| apart(place) > 0.0 && apart(place) < 2e-4));
-    assert!((0..5).all(|place| apart(place) == 0.0), "walls stay");
+    assert!((0..5).all(|place| apart(place) == 0.0), "walls must not be displaced");
     check(&moved, 195, 190, 180);
     let again = scene.clone().perturbed(3, 1e-4);
     assert_eq!(moved.build().0.hash(), again.build().0.hash());

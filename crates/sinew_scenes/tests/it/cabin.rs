@@ -48,7 +48,7 @@ fn stairs_go_down_to_the_ground_in_equal_steps() {
         let expected = PORCH_HEIGHT - k as f32 * STEP_RISE;
         assert!((top - expected).abs() < 1e-4, "height after step {k}: {top} m, expected {expected} m");
     }
-    let step = props.iter().find(|p| p.name == "step").and_then(half_extents).expect("a step");
+    let step = props.iter().find(|p| p.name == "step").and_then(half_extents).expect("the cabin has steps");
     assert!((2.0 * step.x - STAIRS_WIDTH).abs() < 1e-5);
 }
 

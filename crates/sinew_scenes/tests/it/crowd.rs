@@ -1,4 +1,4 @@
-//! The crowd: a saved one continues equally, and a walking one allocates nothing.
+//! The scene `crowd`: a restored run continues with the same bits, and steps of a walking crowd allocate nothing.
 
 use sinew::math::{Reader, Writer};
 use sinew_scenes::scenes::{Instance, find};
@@ -6,7 +6,7 @@ use sinew_scenes::scenes::{Instance, find};
 fn started(assignments: &[&str]) -> Instance {
     let scene = find("crowd").expect("the scene is registered");
     let mut settings = scene.settings();
-    assignments.iter().for_each(|assignment| settings.assign(assignment).expect("a setting of it"));
+    assignments.iter().for_each(|assignment| settings.assign(assignment).expect("the scene has the setting"));
     scene.start(&settings)
 }
 
@@ -16,10 +16,10 @@ fn bytes(run: &Instance) -> Vec<u8> {
     saved.into_bytes()
 }
 
-fn figure(run: &Instance, name: &str) -> f64 {
+fn metric_value(run: &Instance, name: &str) -> f64 {
     let metrics = run.metrics();
-    let metric = metrics.iter().find(|metric| metric.name == name).expect("it has that figure");
-    metric.value.expect("it is known")
+    let metric = metrics.iter().find(|metric| metric.name == name).expect("the scene has the metric");
+    metric.value.expect("the metric has a value")
 }
 
 #[test]
@@ -30,19 +30,19 @@ fn saved_crowd_continues_equally() {
         while run.world().step_count() < moment {
             run.step();
             for (most, state) in seen.iter_mut().zip(["animated", "limp", "preparing", "getting_up"]) {
-                *most = f64::max(*most, figure(&run, state));
+                *most = f64::max(*most, metric_value(&run, state));
             }
         }
         let saved = bytes(&run);
         let mut other = started(&["n=6", "waves=2"]);
-        other.load(&mut Reader::new(&saved)).expect("the saved state is valid");
+        other.load(&mut Reader::new(&saved)).expect("the saved state must load");
         assert_eq!(bytes(&other), saved, "at step {moment}");
         for _ in 0..90 {
             run.step();
             other.step();
         }
         assert_eq!(bytes(&other), bytes(&run), "from step {moment}");
-        run.load(&mut Reader::new(&saved)).expect("the saved state is valid");
+        run.load(&mut Reader::new(&saved)).expect("the saved state must load");
         for length in (0..saved.len()).step_by(1_009) {
             assert!(other.load(&mut Reader::new(&saved[..length])).is_err(), "{length} bytes");
         }
@@ -56,5 +56,5 @@ fn walking_crowd_allocates_nothing() {
     let mut run = started(&["n=5"]);
     (0..14).for_each(|_| run.step());
     let counted = allocation_counter::measure(|| (0..30).for_each(|_| run.step()));
-    assert_eq!(counted.count_total, 0, "{counted:?}");
+    assert_eq!(counted.count_total, 0, "steps of a walking crowd must allocate nothing: {counted:?}");
 }

@@ -14,7 +14,7 @@ fn triangles(primitive: &Primitive) -> impl Iterator<Item = [usize; 3]> {
 }
 
 #[test]
-fn stands_on_the_floor_and_is_one_metre_seventy_five() {
+fn mannequin_stands_on_the_floor_and_is_175_cm_high() {
     let all: Vec<f32> = primitives().iter().flat_map(|p| p.positions.iter().map(|v| v.y)).collect();
     let (low, high) = all.iter().fold((f32::MAX, f32::MIN), |(a, b), &y| (a.min(y), b.max(y)));
     assert!(low.abs() < 0.003, "soles at {low}");
@@ -103,7 +103,7 @@ fn parts(primitive: &Primitive) -> Vec<usize> {
 }
 
 #[test]
-fn every_part_encloses_volume_and_all_parts_that_of_a_person() {
+fn each_part_encloses_volume_and_the_sum_is_that_of_a_person() {
     let (mut count, mut total) = (0, 0.0);
     for primitive in primitives() {
         let label = parts(&primitive);
@@ -120,7 +120,7 @@ fn every_part_encloses_volume_and_all_parts_that_of_a_person() {
     }
     assert_eq!(count, 2 * 9 + 7, "expected nine parts on each side and seven in the middle");
     // Parts overlap at the joints, so the sum is above the 0.065 to 0.075 m³ of a slim adult.
-    assert!((0.06..0.09).contains(&total), "{total} m³");
+    assert!((0.06..0.09).contains(&total), "the parts enclose {total} m³");
 }
 
 #[test]
@@ -154,7 +154,11 @@ fn left_mirrors_right() {
     let rig = mannequin().rig;
     for joint in &rig.joints {
         let Some(rest) = joint.name.strip_prefix("left") else { continue };
-        let twin = rig.joints.iter().find(|j| j.name == format!("right{rest}")).expect("a right one");
+        let twin = rig
+            .joints
+            .iter()
+            .find(|j| j.name == format!("right{rest}"))
+            .expect("the joint has a counterpart on the right");
         let t = joint.rest.translation;
         assert_eq!(twin.rest.translation, Vec3::new(-t.x, t.y, t.z), "{}", joint.name);
     }
@@ -162,7 +166,7 @@ fn left_mirrors_right() {
 
 /// The mannequin is in every recording's start state, so a change of its bits is a change of format.
 #[test]
-fn bits_are_those_of_the_release() {
+fn mannequin_has_the_bits_of_the_release() {
     let mannequin = mannequin();
     let mut hasher = StableHasher::default();
     for primitive in &mannequin.rig.meshes[0].primitives {

@@ -10,7 +10,7 @@ fn unmet(pose: u32, gravity_factor: f32) -> Vec<Metric> {
     let scene = find("mjcf_drop").expect("the scene is registered");
     let mut settings = scene.settings();
     settings.assign(&format!("file={HUMANOID}")).expect("the humanoid can be read");
-    settings.assign(&format!("pose={pose}")).expect("there is such a pose");
+    settings.assign(&format!("pose={pose}")).expect("the pose exists");
     let mut run = scene.start_under(&settings, gravity_factor);
     for _ in 0..scene.steps {
         run.step();
@@ -39,9 +39,9 @@ fn the_mjcf_scene_needs_its_file_and_is_unlisted() {
     let scene = find("mjcf_drop").expect("the scene is registered");
     assert!(registry().iter().all(|listed| listed.name != scene.name));
     let mut settings = scene.settings();
-    let missing = settings.check().expect_err("it has no file yet");
+    let missing = settings.check().expect_err("the scene must require its file");
     assert_eq!(missing.to_string(), "`file` is not set: it takes the path of a model in MJCF");
-    let absent = settings.assign("file=no/such.xml").expect_err("there is no such file");
+    let absent = settings.assign("file=no/such.xml").expect_err("a missing file must be refused");
     assert!(matches!(absent, SettingError::File(_)) && absent.to_string() == "no/such.xml: no such folder");
-    assert_eq!(find("pendulum").expect("it is listed").settings().check(), Ok(()));
+    assert_eq!(find("pendulum").expect("the scene is registered").settings().check(), Ok(()));
 }

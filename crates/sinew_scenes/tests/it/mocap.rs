@@ -27,11 +27,14 @@ fn captured_walk_fits_three_bodies() {
 fn files_without_motion_are_refused() {
     let scene = find("mocap").expect("the scene is registered");
     let mut settings = scene.settings();
-    let missing = settings.check().expect_err("it has no file yet");
+    let missing = settings.check().expect_err("the scene must require its file");
     assert_eq!(missing.to_string(), "`motion` is not set: it takes the path of a captured motion, a BVH");
-    let absent = settings.assign("motion=no/such.bvh").expect_err("there is no such file");
+    let absent = settings.assign("motion=no/such.bvh").expect_err("a missing file must be refused");
     assert!(matches!(absent, SettingError::File(_)) && absent.to_string() == "no/such.bvh: no such folder");
     let other = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
-    let refused = settings.assign(&format!("motion={other}")).expect_err("it is no BVH").to_string();
+    let refused = settings
+        .assign(&format!("motion={other}"))
+        .expect_err("a file that is no BVH must be refused")
+        .to_string();
     assert!(refused.starts_with(other), "{refused}");
 }

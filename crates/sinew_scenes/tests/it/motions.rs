@@ -22,7 +22,7 @@ fn times(clip: &Clip) -> impl Iterator<Item = f32> + use<> {
 }
 
 fn joint(character: &Mannequin, name: &str) -> usize {
-    character.rig.joints.iter().position(|j| j.name == name).expect("a joint of that name")
+    character.rig.joints.iter().position(|j| j.name == name).expect("the rig has the joint")
 }
 
 fn skin_at(character: &Mannequin, clip: &Clip, time: f32) -> Vec<Vec<Vec3>> {
@@ -99,7 +99,7 @@ fn hinge(character: &Mannequin, clip: &Clip, time: f32, name: &str, axis: Vec3) 
 }
 
 #[test]
-fn knees_and_elbows_bend_one_way_only() {
+fn knees_and_elbows_do_not_hyperextend() {
     let character = mannequin();
     let direction = |from: &str, to: &str| {
         let along = character.rig.joints[joint(&character, to)].rest.translation.normalize();
@@ -142,7 +142,7 @@ fn skin_stays_above_the_floor_and_touches_it() {
 }
 
 #[test]
-fn runners_and_boxers_are_on_the_floor_or_above_it() {
+fn skins_of_runners_and_boxers_do_not_sink_into_the_floor() {
     let character = mannequin();
     // A run has a phase of flight.
     for (clip, highest) in [(walking(Path::Circle(2.0)).clip, 0.02), (running().clip, 0.08), (punch(), 0.02)]
@@ -156,7 +156,7 @@ fn runners_and_boxers_are_on_the_floor_or_above_it() {
 }
 
 #[test]
-fn balls_of_feet_stay_where_they_are_put_down() {
+fn balls_of_planted_feet_do_not_slide() {
     let character = mannequin();
     for cycle in [walking(Path::Straight), walking(Path::Circle(2.0)), running()] {
         for (name, offset) in [("leftToes", 0.0), ("rightToes", 0.5)] {
@@ -183,7 +183,11 @@ fn getting_up_starts_lying_and_ends_upright() {
     for (index, belly_up) in [(motions.get_up_supine, 1.0), (motions.get_up_prone, -1.0)] {
         let clip = &character.clips[index];
         let start = model_at(&character, clip, 0.0);
-        assert!(start[hips].translation.y < 0.13 && start[head].translation.y < 0.2, "{} lies", clip.name);
+        assert!(
+            start[hips].translation.y < 0.13 && start[head].translation.y < 0.2,
+            "{}: does not start lying on the floor",
+            clip.name
+        );
         assert!(start[hips].vector(Vec3::Z).y * belly_up > 0.95, "{}: lies on the wrong side", clip.name);
         let along = (start[head].translation - start[hips].translation) * -belly_up;
         assert!(along.z > 0.5, "{}: does not lie toward +Z", clip.name);
@@ -193,7 +197,7 @@ fn getting_up_starts_lying_and_ends_upright() {
     }
 }
 
-/// No joint jumps: the fastest joint of a person here is a swinging foot, at about 4 m/s.
+/// Joints must not jump between samples. The fastest joint, a swinging foot, moves at about 4 m/s.
 #[test]
 fn joints_move_at_human_speed() {
     let character = mannequin();

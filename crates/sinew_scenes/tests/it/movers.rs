@@ -21,7 +21,7 @@ fn seeds(all: usize) -> impl Iterator<Item = u64> {
     let part = std::env::var("SINEW_FULL").ok();
     let (part, parts) = part.as_deref().map_or((0, all), |part| {
         let (k, n) = part.split_once('/').unwrap_or(("1", "1"));
-        let number = |digits: &str| digits.parse::<u64>().expect("SINEW_FULL is 1 or k/n");
+        let number = |digits: &str| digits.parse::<u64>().expect("SINEW_FULL must be 1 or k/n");
         (number(k) - 1, number(n))
     });
     (0..all).filter(move |seed| seed % parts == part)
@@ -45,7 +45,7 @@ fn level(name: &str, scale: f32) -> TriangleMesh {
 
 fn bounds(level: &TriangleMesh) -> Aabb {
     let at = |p: Vec3| Aabb { min: p, max: p };
-    level.positions.iter().map(|&p| at(p)).reduce(|a, b| a.merge(&b)).expect("it has corners")
+    level.positions.iter().map(|&p| at(p)).reduce(|a, b| a.merge(&b)).expect("the mesh has corners")
 }
 
 fn with_floor(level: &TriangleMesh) -> World {
@@ -64,8 +64,9 @@ fn depth(world: &World, id: MoverId) -> f32 {
     found.first().map_or(0.0, |deepest| deepest.depth)
 }
 
-/// Runs `SHARE` walks for each seed on the ground of that seed, never inside of or through a body. From the end of each
-/// walk the mover reaches the farthest position that a flood fill finds, `places` or more on average.
+/// Runs `SHARE` walks for each seed on the ground of that seed. Checks that no walk goes into or through a body, that
+/// the mover then reaches the farthest position that a flood fill finds, and that flood fills find at least `places`
+/// positions on average.
 fn wander(name: &str, all: usize, places: usize, ground: impl Fn(u64) -> Terrain) {
     let mut tally = Tally::default();
     for seed in seeds(all) {
@@ -82,11 +83,11 @@ fn wander(name: &str, all: usize, places: usize, ground: impl Fn(u64) -> Terrain
     let Tally { walks, deepest, floods, ref wrong, .. } = tally;
     let mean = tally.places / usize::max(floods, 1);
     println!(
-        "{name}: deepest {deepest} m in {walks} walks, {floods} floods of {mean} places, {} wrong",
+        "{name}: deepest {deepest} m in {walks} walks, {floods} flood fills of {mean} positions on average, {} faults",
         wrong.len()
     );
     assert!(wrong.is_empty(), "{wrong:#?}");
-    assert!(deepest < 1e-3, "{deepest} m inside");
+    assert!(deepest < 1e-3, "a mover was {deepest} m inside a body");
     assert!(floods > walks / 2 && mean >= places, "{floods} floods reach {mean} cells on average");
 }
 

@@ -9,9 +9,13 @@ use sinew_scenes::scenes::Act;
 
 /// Records a stack that is pulled, struck and shot at; `harder` changes one push.
 fn played(harder: f32) -> Recording {
-    let mut recorder = Recorder::start("stack", &[]).expect("there is such a scene");
+    let mut recorder = Recorder::start("stack", &[]).expect("the scene is registered");
     let world = recorder.instance().world();
-    let body = world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic).last().expect("it moves");
+    let body = world
+        .body_ids()
+        .filter(|&id| world.kind(id) == BodyKind::Dynamic)
+        .last()
+        .expect("the scene has a dynamic body");
     let point = world.center_of_mass(body);
     for step in 0..90 {
         match step {
@@ -44,7 +48,7 @@ fn played(harder: f32) -> Recording {
 
 #[test]
 fn recording_repeats_its_states_on_any_number_of_threads() {
-    let recording = Recording::read(&played(1.0).to_bytes()).expect("what we write we read");
+    let recording = Recording::read(&played(1.0).to_bytes()).expect("a written recording must be readable");
     assert_eq!(recording, played(1.0));
     assert_eq!(recording.key_frames.iter().map(|frame| frame.step).collect::<Vec<_>>(), [0, 30, 60, 90]);
     let mut replay = Replay::start(recording.clone()).expect("the scene starts");
@@ -103,15 +107,15 @@ fn stored_file_is_read() {
     let byte =
         |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).expect("ASCII"), 16).expect("hexadecimal");
     let bytes: Vec<u8> = digits.chunks(2).map(byte).collect();
-    let recording = Recording::read(&bytes).expect("it is read");
+    let recording = Recording::read(&bytes).expect("the stored file must be readable");
     assert_eq!((recording.made_by.as_str(), recording.scene.as_str()), ("0.0.1", "free_fall"));
     assert_eq!(recording.steps[0].operations, [Operation::Release]);
     assert_eq!(recording.steps[0].hash, 0x0123_4567_89ab_cdef);
     assert_eq!(recording.key_frames[0].bodies[0].1.translation, Vec3::new(1.0, 2.0, 3.0));
     let mut replay = Replay::start(recording).expect("the scene still exists");
-    let step = replay.step().expect("one step");
+    let step = replay.step().expect("the recording has a step");
     assert_ne!(step.found, step.recorded);
-    let refused = |bytes: &[u8]| Recording::read(bytes).expect_err("it is refused").to_string();
+    let refused = |bytes: &[u8]| Recording::read(bytes).expect_err("the bytes must be refused").to_string();
     assert_eq!(refused(b"nothing of the kind"), "is no recording (byte 0)");
     let later = [&bytes[..8], &[9, 0, 0, 0], &bytes[12..]].concat();
     assert_eq!(refused(&later), "is a recording of format 9; this version reads 1, 2 and 4 (byte 8)");
@@ -142,7 +146,7 @@ fn wrong_poses_in_key_frames_are_reported() {
 }
 
 /// Rewrites the checksums of a file's blocks.
-fn sum_up(bytes: &mut [u8]) {
+fn rewrite_checksums(bytes: &mut [u8]) {
     let mut at = 12;
     while let Some(length) = bytes.get(at..at + 4) {
         let length = u32::from_le_bytes(length.try_into().expect("four bytes")) as usize;
@@ -155,7 +159,7 @@ fn sum_up(bytes: &mut [u8]) {
     }
 }
 
-/// Any bytes with valid checksums are read or refused, and replay without a panic.
+/// Damaged files with valid checksums are read or refused, and those that are read replay without a panic.
 #[test]
 fn hostile_files_are_refused() {
     let bytes = played(1.0).to_bytes();
@@ -170,7 +174,7 @@ fn hostile_files_are_refused() {
             let place = random.index(bytes.len());
             bytes[place] = random.index(256) as u8;
         }
-        sum_up(&mut bytes);
+        rewrite_checksums(&mut bytes);
         let Ok(recording) = Recording::read(&bytes) else {
             refused += 1;
             continue;

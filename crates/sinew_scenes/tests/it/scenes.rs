@@ -58,8 +58,8 @@ fn metrics_after(scene: &Scene, settings: &Settings, gravity_factor: f32) -> Vec
     after(scene, settings, gravity_factor).metrics()
 }
 
-/// Counts the allocations of steps after the scene, with all sleeping bodies awake as before. Some piles sleep after half a
-/// second: the steps before let the bounds trees reach their largest size.
+/// Counts the allocations of steps after the scene's own, with all sleeping bodies woken first. Unmeasured steps before
+/// let the bounding-volume trees reach their largest size.
 fn warm_allocations(world: &mut World) -> u64 {
     let mut allocations = 0;
     for _ in 0..4 {

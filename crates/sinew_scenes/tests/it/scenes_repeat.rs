@@ -1,4 +1,5 @@
-//! Every scene gives the same bits in every way of running it; its settings are checked.
+//! Every scene gives the same bits on any number of threads, from snapshots and at any frame rate; settings are
+//! checked.
 
 use core::num::NonZero;
 use core::sync::atomic::{AtomicUsize, Ordering};
@@ -22,7 +23,7 @@ fn steps(scene: &Scene) -> u64 {
 fn started(scene: &Scene) -> Instance {
     let mut settings = scene.settings();
     if scene.name == "joint_grid" {
-        settings.assign("side=6").expect("it has that setting");
+        settings.assign("side=6").expect("the scene has the setting");
     }
     scene.start(&settings)
 }
@@ -84,7 +85,7 @@ fn repeats_with_threads(scene: &Scene, reference: &Reference) {
 
 fn continues_from_a_snapshot(scene: &Scene, reference: &Reference, (middle, saved): (u64, &[u8])) {
     let mut run = started(scene);
-    run.load(&mut Reader::new(saved)).expect("the saved state is valid");
+    run.load(&mut Reader::new(saved)).expect("the saved state must load");
     for (step, &hash) in reference.hashes.iter().enumerate().skip(middle as usize) {
         run.step();
         assert_eq!(run.world().hash(), hash, "{} restored, step {step}", scene.name);
@@ -104,12 +105,12 @@ fn repeats_at_any_frame_rate(scene: &Scene, reference: &Reference, steps: u64) {
         }
         assert_eq!(run.world().step_count(), steps);
         let same = poses(run.world()) == reference.poses;
-        assert!(same, "{}: other poses at {rate} frames a second", scene.name);
+        assert!(same, "{}: the poses differ at {rate} frames per second", scene.name);
     }
 }
 
-/// Saved at a random step, every scene continues equally in a new world and on two threads. Scenes with their own functions or
-/// objects are left out, because a new world does not have them.
+/// Saved at a random step, every scene continues equally in a new world and on two threads. Scenes with their own
+/// functions or objects are left out, because a new world does not have them.
 #[test]
 fn snapshot_loaded_into_an_unrelated_world_continues_equally() {
     let mut met = 0;
@@ -122,7 +123,7 @@ fn snapshot_loaded_into_an_unrelated_world_continues_equally() {
         run.world().save_shapes(&mut shapes);
         let mut stranger = started(scene);
         let mut world = World::new(WorldDef::default());
-        world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("the saved states are valid");
+        world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("the saved shape library must load");
         *stranger.world_mut() = world;
         if stranger.load(&mut Reader::new(saved.as_bytes())).is_err() {
             continue;
@@ -153,9 +154,11 @@ fn saved_brawl_continues_in_an_unrelated_world() {
             run.world().save_shapes(&mut shapes);
             let mut stranger = scene.start(&settings);
             let mut world = World::new(WorldDef::default());
-            world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("the saved states are valid");
+            world
+                .load_shapes(&mut Reader::new(shapes.as_bytes()))
+                .expect("the saved shape library must load");
             *stranger.world_mut() = world;
-            stranger.load(&mut Reader::new(saved.as_bytes())).expect("the saved state is valid");
+            stranger.load(&mut Reader::new(saved.as_bytes())).expect("the saved state must load");
             for step in 0..60 {
                 run.step();
                 stranger.step_with(&Threads::new(2), &NoProfiler);
@@ -164,7 +167,7 @@ fn saved_brawl_continues_in_an_unrelated_world() {
                 stranger.save(&mut other);
                 assert!(
                     own.as_bytes() == other.as_bytes(),
-                    "other bytes: powered {powered}, round {round}, step {step}"
+                    "the bytes differ: powered {powered}, round {round}, step {step}"
                 );
             }
         }
@@ -175,12 +178,14 @@ fn saved_brawl_continues_in_an_unrelated_world() {
 fn settings_are_checked() {
     let scene = find("mass_ratio").expect("the scene is registered");
     let mut settings = scene.settings();
-    settings.assign("links=3").expect("a whole number in range");
+    settings.assign("links=3").expect("the value is in range");
     // The scene has two trees, one of which hangs on a hook.
     assert_eq!(scene.start(&settings).world().joint_ids().count(), 2 + 3);
     assert_eq!(scene.start(&scene.settings()).world().joint_ids().count(), 39 + 40);
 
-    let mut refused = |assignment: &str| settings.assign(assignment).expect_err("invalid").to_string();
+    let mut refused = |assignment: &str| {
+        settings.assign(assignment).expect_err("the assignment must be refused").to_string()
+    };
     assert_eq!(refused("links"), "`links` is not key=value");
     assert_eq!(refused("lnks=3"), "no setting `lnks`; there is ratio, links");
     let domain = "it takes a whole number from 2 to 200";
@@ -196,7 +201,7 @@ fn settings_are_checked() {
 }
 
 #[test]
-fn names_and_settings_are_valid_on_a_command_line() {
+fn scene_and_setting_names_need_no_quotes_on_a_command_line() {
     for scene in registry() {
         let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
         let plain = |name: &str| name.chars().all(fits);

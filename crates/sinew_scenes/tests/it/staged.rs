@@ -1,4 +1,4 @@
-//! The demo in a loop.
+//! The staged demo, which runs in a loop and carries out a user's instructions.
 
 use sinew::math::{Reader, Vec3, Writer};
 use sinew::ragdoll::State;
@@ -45,8 +45,8 @@ fn plays(stage: &Instance, clip: usize) -> bool {
     character.animator().tracks().any(|track| track.def().clip == id)
 }
 
-/// The character on the stage goes limp and stays down, plays a clip where it lies, falls with muscles, gets up, and walks as the
-/// user leads it.
+/// The character on the stage goes limp and stays down, plays a clip where it lies, falls with muscles, gets up, and
+/// walks as the user leads it.
 #[test]
 fn a_character_carries_out_instructions() {
     for mut stage in [staged(Sample::Mannequin.character()), fall_of_character(Sample::Mannequin.character())]
@@ -54,27 +54,27 @@ fn a_character_carries_out_instructions() {
         run(&mut stage, 1);
         stage.act(Act::Limp);
         run(&mut stage, 14);
-        assert_eq!(state(&stage), State::Limp, "it stays down");
+        assert_eq!(state(&stage), State::Limp, "the character must stay down");
         stage.act(Act::Powered);
         run(&mut stage, 1);
         assert_ne!(state(&stage), State::Animated);
         stage.act(Act::Limp);
-        let clips = stage.directed().expect("a character").def().motions().clips.len();
+        let clips = stage.directed().expect("the stage carries out instructions").def().motions().clips.len();
         stage.act(Act::Play(clips as u32 - 1));
         run(&mut stage, 2);
         assert_eq!(state(&stage), State::Animated);
-        assert!(plays(&stage, clips - 1), "it plays its last clip");
+        assert!(plays(&stage, clips - 1), "the character must play its last clip");
         stage.act(Act::Powered);
         run(&mut stage, 1);
         assert_ne!(state(&stage), State::Animated);
         stage.act(Act::GetUp);
         run(&mut stage, 10);
-        assert_eq!(state(&stage), State::Animated, "it is up");
+        assert_eq!(state(&stage), State::Animated, "the character must be up");
         let before = stage.steered().expect("the stage can be steered");
         stage.steer(Vec3::X * 1.2);
         run(&mut stage, 3);
         let way = stage.steered().expect("the stage can be steered") - before;
-        assert!(way.x > 1.5 && way.z.abs() < 1.0, "it walked {way}");
+        assert!(way.x > 1.5 && way.z.abs() < 1.0, "the character walked by {way}");
         // An instruction that does not exist changes nothing.
         stage.act(Act::Play(9999));
         run(&mut stage, 1);
@@ -101,7 +101,7 @@ fn instructions_are_saved() {
     let bytes = out.into_bytes();
     run(&mut stage, 3);
     let hash = stage.world().hash();
-    stage.load(&mut Reader::new(&bytes)).expect("the same scene");
+    stage.load(&mut Reader::new(&bytes)).expect("the saved state must load");
     run(&mut stage, 3);
     assert_eq!(stage.world().hash(), hash);
     assert!(plays(&stage, 0));

@@ -36,14 +36,14 @@ pub enum GetsUpBy {
     Builtin,
     /// No source: the user chose no get-ups.
     Unwanted,
-    /// No clips; contains the reason, appended to 'it does not get up: '.
+    /// The character has no clips to get up. Contains the reason, which follows 'it does not get up: ' in messages.
     Nothing(String),
-    /// The built-in motions, none of which works on this body; contains the reason, as above.
+    /// None of the built-in motions works on this body. Contains the reason, as above.
     Unfit(String),
 }
 
 impl GetsUpBy {
-    /// Returns the flaw of a human that stays down because no built-in motion fits it.
+    /// Returns the flaw of a human that stays down because no built-in motion works on its body.
     pub fn flaw(&self) -> Option<String> {
         let Self::Unfit(why) = self else { return None };
         Some(format!("it does not get up: {why}"))
@@ -59,17 +59,19 @@ fn clips_help(fall: Option<&str>) -> String {
     }
 }
 
-/// Heights of the centre of mass above which a character stands and below which it lies, as shares of that in the bind pose.
+/// Height of the centre of mass above which a character stands, and height below which it lies, as shares of its height
+/// in the bind pose.
 const STANDS: f32 = 0.7;
 const LIES: f32 = 0.5;
 
-/// Returns true for a clip in which a standing character ends lying, for example a death.
+/// Returns whether a character stands at the start of a clip and lies at its end, for example in a death.
 fn ends_lying(def: &CharacterDef, clip: &Clip) -> bool {
     let [start, end] = def.heights_in(clip);
     start > STANDS && end < LIES
 }
 
-/// Returns the index of the get-up clip that the user chose: the clip, or a copy of it played backwards if it ends lying.
+/// Returns the index of the get-up clip that the user chose: the clip, or a copy of it played backwards if it ends
+/// lying.
 fn chosen(
     file: &str,
     def: &CharacterDef,
@@ -116,7 +118,7 @@ pub fn actor(
     let Motions { clips, looped, ahead, .. } = motions;
     let is_fall = |clip: &&Clip| ends_lying(&def, clip);
     let help = clips_help(clips.iter().find(is_fall).map(|clip| clip.name.as_str()));
-    // Otherwise a character that lies in its file would walk along its own axes into the floor.
+    // Without this, a character that lies in its file would walk along its own forward axis into the floor.
     let is_lying = lies(&def.ragdoll, analysis.hints.up.unwrap_or(Vec3::Y));
     let locomotion = match ahead {
         _ if is_lying => Locomotion::Exact,

@@ -58,7 +58,8 @@ fn carrier(role: Role, analysis: &RigAnalysis, bodies: &[RagdollBodyDef]) -> Opt
     bodies.iter().position(|body| body.joint == joint || body.merged.contains(&joint))
 }
 
-/// Returns the body that moves a joint of that name, or the first one above the joint in the rig, else below.
+/// Returns the body that moves the joint of that name: its own, else the nearest one among its ancestors, else one
+/// among its descendants.
 fn bearer(name: &str, rig: &Rig, bodies: &[RagdollBodyDef]) -> Option<usize> {
     let own =
         |joint: usize| bodies.iter().position(|body| body.joint == joint || body.merged.contains(&joint));
@@ -69,8 +70,8 @@ fn bearer(name: &str, rig: &Rig, bodies: &[RagdollBodyDef]) -> Option<usize> {
         .or_else(|| bodies.iter().position(|body| line(body.joint).any(|at| at == joint)))
 }
 
-/// Returns the nearest body along the spine (of two equally near ones the lower); for a limb, the next part toward the
-/// trunk. A creature's spine is scaled to a human's, for any number of parts.
+/// Returns the nearest body along the spine (of two equally near ones, the lower one); for a limb, the body of the next
+/// part toward the trunk. Positions along a creature's spine are scaled to those of a human's, for any number of parts.
 fn nearest(role: Role, bodies: &[RagdollBodyDef]) -> Option<usize> {
     if let Some(place) = SPINE.iter().position(|other| *other == role) {
         let along = (1..SPINE.len()).flat_map(|away| [place.checked_sub(away), Some(place + away)]);

@@ -21,7 +21,7 @@ pub struct Motions {
     pub clips: Vec<Clip>,
     /// The clip that plays until the fall.
     pub looped: Option<usize>,
-    /// Speed at which the character goes ahead while that clip plays, m/s; 0: the clip's own motion.
+    /// Forward speed of the character while that clip plays, m/s. With 0 the character moves by the clip's own motion.
     pub ahead: f32,
     /// Repairs made on reading the other files, one sentence each.
     pub notes: Vec<String>,
@@ -75,7 +75,7 @@ impl Motions {
         Ok(Self { clips, looped, ahead: 0.0, notes })
     }
 
-    /// Sets the speed ahead; returns a note if the clip walks on the spot and no speed is set.
+    /// Sets the forward speed. Returns a note if the clip walks on the spot and the user set no speed.
     ///
     /// # Errors
     /// If `speed` is that of the feet, and the feet do not walk on the spot.
@@ -114,7 +114,7 @@ impl Motions {
 
 /// Returns the clips of another file, retargeted to this character: by joint names, else by roles.
 fn read_clips(path: &Path, file: &CharacterFile, notes: &mut Vec<String>) -> Result<Vec<Clip>> {
-    // Plays the existing rows, even if a BVH header declares more or fewer.
+    // Accepts the rows that exist, even if the BVH header declares another number.
     let bvh = BvhOptions { rows: BvhRows::AsPresent, ..BvhOptions::default() };
     let motion = Motion::load(path, &MotionOptions { bvh, ..MotionOptions::default() })?;
     let rows = motion.file.notes.iter().filter(|note| note.contains(" frames, has "));

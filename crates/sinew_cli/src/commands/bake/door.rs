@@ -11,7 +11,7 @@ const PLACES: i32 = 6;
 const LEVELS: u8 = 24;
 /// Door heights, as shares of the room's height.
 const DOORS: core::ops::Range<f32> = 0.5..0.97;
-/// Free depth behind a door, and largest distance of its wall, in room heights.
+/// Smallest free depth behind a door, and largest distance of the door's wall, in room heights.
 const BEHIND: f32 = 0.3;
 const FARTHEST: f32 = 4.0;
 /// Largest distance of two wall hits over a door from one plane, as a share of the room's height.
@@ -95,8 +95,8 @@ impl Rays {
         let is_door = lintel > 0
             && ways[..lintel].iter().all(|&way| is_free(way))
             && ways[lintel..].iter().all(|&way| is_wall(way));
-        // The exact edge of the lintel if it is between the last free height and the first on the wall, else
-        // half-way between them.
+        // The lower edge of the lintel, if a ray finds it between the last free height and the first height at the
+        // wall; else half-way between them.
         let inside = ground + Vec3::Y * 0.01 + toward * (highest + 0.02 * room);
         let height = self.way(inside, Vec3::Y * room) + 0.01;
         let between = [levels[lintel.saturating_sub(1)], levels[lintel]];

@@ -30,8 +30,8 @@ struct Node {
     at: Vec3,
 }
 
-/// Returns the main grounds, largest first, then the others. `floors` returns the walkable heights below a position, down to
-/// a depth, highest first.
+/// Returns the main grounds, largest first, then the others. `floors` returns the walkable heights below a position,
+/// down to a depth, highest first.
 pub fn grounds(bounds: &Aabb, height: f32, floors: impl Fn(Vec3, f32) -> Vec<f32>) -> Vec<Ground> {
     let size = bounds.max - bounds.min;
     let count = |length: f32| ((length / (CELL * height)) as usize).clamp(COLUMNS[0], COLUMNS[1]) | 1;
@@ -67,8 +67,8 @@ pub fn grounds(bounds: &Aabb, height: f32, floors: impl Fn(Vec3, f32) -> Vec<f32
     grounds
 }
 
-/// Returns the groups of nodes that are connected by steps of at most `step`, as indices. The nodes are in the order of their
-/// cells.
+/// Returns the groups of nodes that are connected by steps of at most `step`, as indices. The nodes are in the order of
+/// their cells.
 fn connected(nodes: &[Node], nx: usize, step: f32) -> Vec<Vec<usize>> {
     let of_cell = |cell: usize| {
         nodes.partition_point(|node| node.cell < cell)..nodes.partition_point(|node| node.cell <= cell)
@@ -118,7 +118,7 @@ mod tests {
 
     /// A field of 20 m with a hut of 4 m, whose roof is at the centre: the field is chosen.
     #[test]
-    fn larger_field_comes_before_the_roof() {
+    fn larger_ground_is_listed_before_a_roof() {
         let bounds = Aabb::around(Vec3::ZERO, Vec3::new(10.0, 3.0, 10.0));
         let floors =
             |at: Vec3, _: f32| if at.x.abs() < 2.0 && at.z.abs() < 2.0 { vec![3.0] } else { vec![0.0] };

@@ -69,8 +69,8 @@ Keys that no joint needs to stay within --key-error are left out. A BVH holds th
 pub struct Bake {
     /// A GLB, glTF, VRM or FBX file with a skinned character
     character: PathBuf,
-    /// The clip that plays until the fall, by name or words of it, or by number from 0; without it the file's walk, else
-    /// its idle, else its first clip; in a file without clips the rest pose
+    /// The clip that plays until the fall, by name or words of it, or by number from 0; without it the file's walk,
+    /// else its idle, else its first clip; in a file without clips the rest pose
     #[arg(long, value_name = "NAME")]
     clip: Option<String>,
     /// Speed ahead while a clip that walks on the spot plays, m/s; 'feet': the speed of its feet
@@ -100,8 +100,9 @@ pub struct Bake {
     /// motions
     #[arg(long)]
     no_builtin_motions: bool,
-    /// The clip by which it gets up, chosen as by --clip; a clip that ends lying is played backwards; 'none': it stays down. By
-    /// default the get-up clip, among those of the file and of --clips, that begins in the pose nearest to the lying one
+    /// The clip by which it gets up, chosen as by --clip; a clip that ends lying is played backwards; 'none': it stays
+    /// down. By default the get-up clip, among those of the file and of --clips, that begins in the pose nearest to the
+    /// lying one
     #[arg(long, value_name = "NAME|none")]
     get_up: Option<String>,
     #[command(flatten)]
@@ -152,12 +153,12 @@ struct Cast {
     file: CharacterFile,
     ragdoll: RagdollDef,
     garments: Vec<Garment>,
-    /// Doubt about the character's mass.
+    /// Reason to doubt the character's mass, if there is one.
     doubt: Option<Doubt>,
     notes: Vec<String>,
 }
 
-/// Largest allowed key error, mm: with a larger error the clip is no copy of the motion.
+/// Largest key error that the user may allow, mm. With a larger one the clip would no longer resemble the motion.
 const LARGEST_KEY_ERROR: f32 = 100.0;
 
 /// Parses an allowed key error, mm.
@@ -335,7 +336,7 @@ impl Bake {
             None => {
                 let mut names = std::iter::once(CLIP_NAME.to_owned())
                     .chain((2..).map(|number: u32| format!("{CLIP_NAME} {number}")));
-                Ok(names.find(|name| !is_taken(name)).expect("there is a number for every clip"))
+                Ok(names.find(|name| !is_taken(name)).expect("one of infinitely many names is free"))
             }
         }
     }

@@ -29,7 +29,7 @@ pub fn of_bake(
     all.into_iter().flatten().collect()
 }
 
-/// Returns a note on the position of a character, if the user gave none.
+/// Returns a note on the position of a character that was searched because the user gave none.
 pub fn stands_at(place: &Place, world: &str) -> Option<String> {
     let [x, y, z] = place.stands.translation.to_array();
     place.found.then(|| {

@@ -231,13 +231,17 @@ mod tests {
         let vertices = [level(3.0), level(2.95), level(0.0)].concat();
         let sides = |first: u32| [[first, first + 1, first + 3], [first, first + 3, first + 2]];
         let triangles = [sides(0), sides(4), sides(8)].concat();
-        let mesh = Mesh::new(&vertices, &triangles).expect("a mesh");
+        let mesh = Mesh::new(&vertices, &triangles).expect("the mesh is valid");
         let walls =
             [-1.2, 1.2].map(|x| slab(Vec3::new(0.1, 1.4, 4.0), Vec3::new(x, 1.4, 0.0), Rotation::IDENTITY));
         let house = BodyDef::fixed(Shape::Mesh(Arc::new(mesh)));
         let bodies: Vec<BodyDef> = walls.into_iter().chain([house]).collect();
-        let found = place(&bodies, 1.75, None, 0.0).expect("a place");
-        assert!(found.stands.translation.y.abs() < 0.01, "on the floor: {}", found.stands.translation);
+        let found = place(&bodies, 1.75, None, 0.0).expect("a position must be found");
+        assert!(
+            found.stands.translation.y.abs() < 0.01,
+            "the position must be on the floor: {}",
+            found.stands.translation
+        );
     }
 
     /// A room whose ceiling is 1.3 heights above its floor, without ground above it.
@@ -251,9 +255,13 @@ mod tests {
         });
         let floor = slab(Vec3::new(4.0, 0.1, 4.0), Vec3::Y * -0.1, Rotation::IDENTITY);
         let bodies: Vec<BodyDef> = comb.chain([floor]).collect();
-        let found = place(&bodies, 2.0, None, 0.0).expect("a place");
-        assert!(found.stands.translation.y.abs() < 0.01, "on the floor: {}", found.stands.translation);
-        assert!(place(&bodies, 2.6, None, 0.0).is_err(), "too tall for the room");
+        let found = place(&bodies, 2.0, None, 0.0).expect("a position must be found");
+        assert!(
+            found.stands.translation.y.abs() < 0.01,
+            "the position must be on the floor: {}",
+            found.stands.translation
+        );
+        assert!(place(&bodies, 2.6, None, 0.0).is_err(), "a character taller than the room must be refused");
     }
 
     #[test]

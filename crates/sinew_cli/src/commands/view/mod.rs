@@ -41,11 +41,11 @@ Example:
 Without --picture and --movie a window opens; ? in it shows all keys. Pictures need no driver: \
 the same command draws the same bytes on every machine.")]
 pub struct View {
-    /// Name of a scene ('sinew scenes' lists them), a world file (.json), a recording (.sinewrec, in a window), or a file with a
-    /// skeleton, a skin or a clip (GLB, glTF, VRM, VRMA, BVH, FBX, DeepMimic)
+    /// Name of a scene ('sinew scenes' lists them), a world file (.json), a recording (.sinewrec, in a window), or a
+    /// file with a skeleton, a skin or a clip (GLB, glTF, VRM, VRMA, BVH, FBX, DeepMimic)
     subject: Option<String>,
-    /// The clip of a file, by name or words of it, or by number from 0; by default its first, in a file without clips the rest
-    /// pose
+    /// The clip of a file, by name or words of it, or by number from 0; by default its first, in a file without clips
+    /// the rest pose
     #[arg(long, value_name = "NAME")]
     clip: Option<String>,
     /// Draw one picture: a .png, .gif or .webp file

@@ -32,7 +32,7 @@ const MARGIN: f32 = 0.1;
 pub struct Reel<'a> {
     /// Title of the pictures.
     pub title: &'a str,
-    /// Time until which the closed forms of the subject hold, seconds.
+    /// Time at which the subject's expectations apply, seconds.
     pub ends: f32,
     /// Size and quality.
     pub settings: RenderSettings,
@@ -67,7 +67,8 @@ impl Reel<'_> {
     ) -> Result<Vec<u8>, EncodeError> {
         let frames = (seconds * FPS as f32) as u32 + 1;
         let time = |frame: u32| frame as f32 / FPS as f32;
-        // The first pass measures the extent, so that the camera need not move; the second draws.
+        // The first pass measures the extent of the subject, so that a fixed camera shows all of it. The second pass
+        // draws.
         let mut rehearsal = Take::new(subject.start());
         rehearsal.step_to(time(frames - 1));
         rehearsal.turn_to_see();

@@ -6,8 +6,9 @@ use crate::boxes::Obb;
 use sinew_math::Vec3;
 use sinew_math::lanes::Real;
 
-/// Squared sine below which two edges count as parallel. Skipping their axis changes the distance by up to the sine
-/// times the boxes' size; using it, by rounding divided by the sine. At a thousandth neither exceeds a thousandth.
+/// Squared sine below which two edges count as parallel. Skipping their axis changes the distance by at most the sine
+/// times the boxes' size; using it, by the rounding error divided by the sine. At a sine of 1e-3 neither error exceeds
+/// 1e-3 of the boxes' size.
 const PARALLEL: f32 = 1e-6;
 
 /// Axis with the largest gap or the least overlap of two boxes, and the distance along it.

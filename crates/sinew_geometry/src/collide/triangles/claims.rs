@@ -51,7 +51,7 @@ impl Claims {
                 candidates[best].holds = true;
             }
         }
-        hear_what_faces(candidates, &overlaps);
+        keep_facing_overlaps(candidates, &overlaps);
     }
 
     /// Voids the features at which a triangle is not touched. An edge voids the corners at its ends, but a corner does
@@ -87,9 +87,9 @@ impl Claims {
     }
 }
 
-/// Keeps an overlap that faces its triangle if no other contact pushes from that side: along the ridges of a valley
-/// each wall voids the corners of the other at the bottom.
-fn hear_what_faces(candidates: &mut [Candidate], overlaps: &impl Fn(&Candidate) -> bool) {
+/// Keeps an overlap that faces its triangle if no kept contact pushes from that side. In a concave crease each triangle
+/// otherwise suppresses the other's contacts at the bottom.
+fn keep_facing_overlaps(candidates: &mut [Candidate], overlaps: &impl Fn(&Candidate) -> bool) {
     let facing = |c: &Candidate| c.normal.dot(c.triangle.normal);
     for _ in 0..MAX_PARTS {
         let felt = |normal: Vec3| candidates.iter().any(|c| c.holds && c.normal.dot(normal) > SAME_SIDE);

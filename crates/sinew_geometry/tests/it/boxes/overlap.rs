@@ -48,8 +48,8 @@ pub fn check(
     Ok(())
 }
 
-/// Error bounds for two boxes: rounding of their sizes, of their distance, and of the centre of an aligned one; and
-/// near parallel edges, the uncertainty of the direction across them.
+/// Returns two error bounds for a pair of boxes, metres. The first covers the rounding of their sizes, their distance,
+/// and the centre of an aligned box; the second also the uncertain cross product of nearly parallel edges.
 pub fn tolerances(a: &WideBox, b: &WideBox, of_center: f64) -> [f64; 2] {
     let scale = a.size() + b.size() + length(add(a.center, b.center, -1.0));
     let fine = 1e-6 * scale + of_center + 1e-12;

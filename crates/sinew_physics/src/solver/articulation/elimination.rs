@@ -175,7 +175,7 @@ impl<R: Real> Symmetric<R> {
     }
 }
 
-/// Inertia of a body with the links below it, about a reference point: momentum `A v + C ω`, angular momentum `Cᵀ v + B ω`.
+/// Articulated-body inertia (Featherstone) of a body and the links below it about a reference point: momentum `A v + C ω`, angular momentum `Cᵀ v + B ω`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia<R> {
     pub mass: Symmetric<R>,

@@ -1,4 +1,4 @@
-//! Effects of single fields.
+//! Effects of single fields, compared with closed forms.
 
 use crate::build::{box_body, capsule_body, sphere_body};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
@@ -33,7 +33,7 @@ pub fn close(found: f32, expected: f32, share: f32, what: &str) {
 }
 
 #[test]
-fn uniform_gravity_adds_to_the_worlds() {
+fn uniform_gravity_field_adds_to_the_worlds_gravity() {
     let mut world = World::new(WorldDef::default());
     let id = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     let group = world.add_particles(&particle(0.2, 0.0, Vec3::X));
@@ -46,7 +46,7 @@ fn uniform_gravity_adds_to_the_worlds() {
         close(v.y, -9.81 * time, 1e-5, "down");
     }
     let mass = world.mass(id).mass;
-    close(world.field_force(field, id).force.x, 3.0 * mass, 1e-6, "asked for");
+    close(world.field_force(field, id).force.x, 3.0 * mass, 1e-6, "reported force of the field");
 }
 
 #[test]
@@ -66,14 +66,14 @@ fn a_circular_orbit_about_a_place_closes() {
     // 2π seconds are 376.99 steps.
     let left = 377.0 * world.def().dt() - core::f32::consts::TAU;
     let at = world.transform(id).translation;
-    assert!((at - Vec3::new(1.0, left, 0.0)).length() < 2e-3, "{at}");
+    assert!((at - Vec3::new(1.0, left, 0.0)).length() < 2e-3, "the orbiting body is at {at}");
     let at = world.particles(group).positions()[0];
-    assert!((at + Vec3::new(1.0, left, 0.0)).length() < 2e-3, "{at}");
+    assert!((at + Vec3::new(1.0, left, 0.0)).length() < 2e-3, "the orbiting body is at {at}");
     close(world.energy().total(), energy, 1e-4, "energy after a turn");
 }
 
 #[test]
-fn masses_of_stars_do_not_overflow() {
+fn gravity_between_masses_of_stars_does_not_overflow() {
     let mut world = World::new(WorldDef {
         gravity: Vec3::ZERO,
         step_nanoseconds: 3_600_000_000_000,
@@ -91,7 +91,7 @@ fn masses_of_stars_do_not_overflow() {
     close(on_earth.x, -3.542e22, 1e-3, "the book's figure, N");
     assert_eq!(on_sun, -on_earth, "forces must be equal and opposite, bit for bit");
     run(&mut world, 24);
-    close(world.velocity(earth).linear.x, -5.931e-3 * 86_400.0, 1e-2, "falls for a day");
+    close(world.velocity(earth).linear.x, -5.931e-3 * 86_400.0, 1e-2, "speed of the Earth after a day");
     let p = world.momentum().linear.x.abs() / (5.972e24 * 512.0);
     assert!(p < 1e-5, "momentum {p} of the Earth's momentum");
 }
@@ -136,7 +136,7 @@ fn drag_reaches_terminal_velocity() {
     let drag = Drag { linear: c, quadratic: k, ..Drag::default() };
     world.add_field(&FieldDef::new(FieldKind::Drag(drag)));
     run(&mut world, 1200);
-    close(-world.velocity(id).linear.y, steady, 3e-5, "a body");
+    close(-world.velocity(id).linear.y, steady, 3e-5, "terminal speed of a body");
     close(-world.particles(group).velocities()[0].y, steady, 3e-5, "a particle");
 }
 
@@ -158,7 +158,7 @@ fn drag_far_beyond_stability_stops_and_never_turns_back() {
         assert!(v.iter().all(|v| v.x > -1e-6 && v.x < 1e-3), "{v:?}");
         assert!(world.velocity(id).angular.length() < 1e-3);
     }
-    close(-world.velocity(id).linear.y, 0.001 * 9.81 / 1e4, 1e-3, "it creeps");
+    close(-world.velocity(id).linear.y, 0.001 * 9.81 / 1e4, 1e-3, "terminal speed under gravity");
 }
 
 /// Returns the force of a wind of 10 m/s along x on a free body at rest.
@@ -186,7 +186,10 @@ fn wind_force_follows_projected_area() {
             4.0 * (n.x.abs() * half.y * half.z + n.y.abs() * half.x * half.z + n.z.abs() * half.x * half.y);
         let brick = blown(&BodyDef { rotation, ..box_body(half, Vec3::ZERO) }, wind);
         close(brick.force.x, pressure * shadow, 1e-4, "box");
-        assert!(brick.force.y.abs() + brick.force.z.abs() < 1e-3, "no lift was asked for");
+        assert!(
+            brick.force.y.abs() + brick.force.z.abs() < 1e-3,
+            "wind without lift must act along its direction only"
+        );
         let capsule = blown(&BodyDef { rotation, ..capsule_body(0.5, 0.1, Vec3::ZERO) }, wind);
         let across = (1.0 - n.y * n.y).sqrt();
         close(capsule.force.x, pressure * (0.2 * across + pi * 0.01), 1e-4, "capsule");
@@ -208,7 +211,7 @@ fn a_tilted_plate_gets_lift() {
 }
 
 #[test]
-fn wind_carries_things_along() {
+fn wind_accelerates_a_free_body_by_the_closed_form() {
     let mut world = weightless();
     let plate = world.add_body(&box_body(Vec3::new(0.01, 0.5, 0.5), Vec3::ZERO));
     let group = world.add_particles(&particle(0.01, 0.05, Vec3::Y * 3.0));
@@ -225,7 +228,7 @@ fn wind_carries_things_along() {
 }
 
 #[test]
-fn gusts_are_smooth_bounded_and_seeded() {
+fn gusts_are_smooth_bounded_and_equal_for_equal_seeds() {
     let gusts = |seed| Gusts { speed: 4.0, length: 2.0, time: 0.5, seed };
     let wind = |seed| Wind { velocity: Vec3::X * 10.0, gusts: Some(gusts(seed)), ..Wind::default() };
     let (mut sum, mut square, mut step) = (Vec3::ZERO, 0.0, 0.0f32);
@@ -233,7 +236,7 @@ fn gusts_are_smooth_bounded_and_seeded() {
     for i in 0..count {
         let at = |i: i32| wind(7).at(Vec3::new(0.01, 0.013, -0.008) * i as f32, i as u64 * 5_000_000);
         let gust = at(i) - Vec3::X * 10.0;
-        assert!(gust.abs().cmple(Vec3::splat(4.0)).all(), "{gust}");
+        assert!(gust.abs().cmple(Vec3::splat(4.0)).all(), "a gust exceeds its bound: {gust}");
         step = step.max((at(i + 1) - at(i)).length());
         sum += gust;
         square += gust.length_squared() / 3.0;
@@ -268,10 +271,10 @@ fn floating_depth_follows_density() {
         let water = Buoyancy { damping: 3.0, ..Buoyancy::default() };
         world.add_field(&FieldDef::new(FieldKind::Buoyancy(water)));
         run(&mut world, 1200);
-        let (shape, at) = world.shapes(id).next().expect("it has one");
+        let (shape, at) = world.shapes(id).next().expect("the body has a shape");
         let plane = field::WaterPlane { normal: Vec3::Y, height: 0.0 };
         close(shape.submerged(&at, &plane).volume / shape.volume(), share, 1e-3, name);
-        assert!(world.velocity(id).linear.length() < 1e-3, "{name} is at rest");
+        assert!(world.velocity(id).linear.length() < 1e-3, "{name}: must be at rest");
     }
 }
 
@@ -285,12 +288,12 @@ fn sinking_bodies_reach_terminal_velocity() {
     let water = Buoyancy { damping: 4.0, drag: 0.0, flow, ..Buoyancy::default() };
     world.add_field(&FieldDef::new(FieldKind::Buoyancy(water)));
     run(&mut world, 900);
-    close(-world.velocity(id).linear.y, 1.5 * 9.81 / 4.0, 1e-4, "sinks at (ρ_b/ρ − 1) g/c");
-    close(world.velocity(id).linear.x, 0.7, 1e-4, "drifts with the flow");
+    close(-world.velocity(id).linear.y, 1.5 * 9.81 / 4.0, 1e-4, "sinking speed (ρ_b/ρ − 1) g/c");
+    close(world.velocity(id).linear.x, 0.7, 1e-4, "drift speed of the flow");
 }
 
 #[test]
-fn fields_end_at_their_regions_and_keep_to_their_layers() {
+fn fields_act_only_in_their_region_and_on_their_layers() {
     let mut world = weightless();
     let push = FieldKind::Uniform(UniformGravity { acceleration: Vec3::X });
     let region = Region::ball(Vec3::ZERO, 2.0, Fade::Linear);
@@ -301,10 +304,10 @@ fn fields_end_at_their_regions_and_keep_to_their_layers() {
         let id = world.add_body(&def);
         world.field_force(field, id).force.x / world.mass(id).mass
     };
-    assert_eq!(on_layer(1, 0.0), 0.0, "another layer");
-    assert_eq!(on_layer(2, 2.5), 0.0, "outside");
-    close(on_layer(3, 0.5), 0.75, 1e-6, "fades linearly");
-    close(on_layer(2, 0.0), 1.0, 1e-6, "full in the middle");
+    assert_eq!(on_layer(1, 0.0), 0.0, "a body on another layer must get no force");
+    assert_eq!(on_layer(2, 2.5), 0.0, "a body outside the region must get no force");
+    close(on_layer(3, 0.5), 0.75, 1e-6, "the force must fade linearly within the margin");
+    close(on_layer(2, 0.0), 1.0, 1e-6, "force in the middle of the region");
     let half = Region::Inside {
         shape: Shape::Box { half_extents: Vec3::splat(1.0) },
         world_from_shape: Transform::from_translation(Vec3::X * 10.0),
@@ -331,14 +334,19 @@ fn an_explosion_pushes_by_area_and_distance() {
     world.explode(&Explosion { occlusion: Occlusion::Static, ..blast });
     let area = core::f32::consts::PI * 0.04;
     let gained = |id| world.velocity(id).linear * world.mass(id).mass;
-    close(gained(near).x, 1000.0 * area * 0.75, 1e-5, "a quarter of the way");
-    close(-gained(far).x, 1000.0 * area * 0.25, 1e-5, "three quarters");
+    close(gained(near).x, 1000.0 * area * 0.75, 1e-5, "impulse at a quarter of the radius");
+    close(-gained(far).x, 1000.0 * area * 0.25, 1e-5, "impulse at three quarters of the radius");
     assert_eq!(gained(beyond), Vec3::ZERO);
-    assert_eq!(gained(hidden), Vec3::ZERO, "behind the wall");
-    close(-gained(brick).z, 1000.0 * 0.16 * 0.5, 1e-5, "one face");
+    assert_eq!(gained(hidden), Vec3::ZERO, "a body behind the wall must get no impulse");
+    close(-gained(brick).z, 1000.0 * 0.16 * 0.5, 1e-5, "impulse on the face toward the explosion");
     close(-world.particles(group).velocities()[0].y * 0.5, 1000.0 * area * 0.75, 1e-5, "a particle");
     world.explode(&blast);
-    close(world.velocity(hidden).linear.z * world.mass(hidden).mass, 1000.0 * area * 0.5, 1e-5, "no shelter");
+    close(
+        world.velocity(hidden).linear.z * world.mass(hidden).mass,
+        1000.0 * area * 0.5,
+        1e-5,
+        "impulse behind the wall without occlusion",
+    );
 }
 
 fn spring(at: &FieldPoint, parameters: &[f32; field::PARAMETERS]) -> Wrench {
@@ -362,7 +370,7 @@ fn registered_user_function_acts_as_a_field() {
 
 #[test]
 #[should_panic(expected = "is registered")]
-fn a_function_must_be_registered() {
+fn field_with_an_unregistered_function_is_refused() {
     let parameters = [0.0; field::PARAMETERS];
     weightless().add_field(&FieldDef::new(FieldKind::Custom { function: 3, parameters }));
 }

@@ -1,4 +1,4 @@
-//! Forces, impulses and bullet impacts by the user.
+//! Forces, impulses and bullet impacts that the user applies.
 
 use super::closed_forms::{point_mass, run, weightless};
 use crate::build::{ball, box_body, sphere_body};
@@ -77,11 +77,11 @@ fn a_lasting_force_acts_at_its_point() {
     world.add_force(rod, &pull);
     run(&mut world, 900);
     let turned = world.transform(rod).rotation * Vec3::NEG_Y;
-    assert!((turned - Vec3::X).length() < 1e-2, "{turned}");
+    assert!((turned - Vec3::X).length() < 1e-2, "the pendulum hangs along {turned}, expected x");
 }
 
 #[test]
-fn a_bullet_leaves_its_momentum() {
+fn bullet_that_stays_in_a_body_gives_it_its_momentum() {
     let mut world = weightless();
     let block = world.add_body(&point_mass(2.0, Vec3::ZERO, Vec3::Y));
     let velocity = Vec3::new(400.0, 0.0, 0.0);
@@ -89,10 +89,16 @@ fn a_bullet_leaves_its_momentum() {
     // (M V + m v)/(M + m), bullet and block together.
     let expected = (Vec3::Y * 2.0 + velocity * 0.01) / 2.01;
     let after = world.velocity(block);
-    assert!((after.linear - expected).length() < 1e-5, "{after:?}");
+    assert!(
+        (after.linear - expected).length() < 1e-5,
+        "velocity after the impact {after:?}, expected {expected}"
+    );
     assert_eq!(after.angular, Vec3::ZERO);
     let total = after.linear * 2.01;
-    assert!((total - (Vec3::Y * 2.0 + velocity * 0.01)).length() < 1e-4, "momentum with the bullet's share");
+    assert!(
+        (total - (Vec3::Y * 2.0 + velocity * 0.01)).length() < 1e-4,
+        "body and bullet must keep their total momentum"
+    );
     assert!((impulse - (expected - Vec3::Y) * 2.0).length() < 1e-4);
 }
 
@@ -110,16 +116,19 @@ fn off_centre_bullet_gets_the_velocity_of_the_struck_point() {
     let impulse = world.apply_bullet_impact(block, mass, velocity, point);
     let struck = world.velocity(block).at(point);
     // Remaining momentum of the bullet.
-    assert!((struck - (velocity - impulse / mass)).length() < 1e-3, "{struck}");
+    assert!((struck - (velocity - impulse / mass)).length() < 1e-3, "velocity of the struck point {struck}");
     let after = world.momentum();
     let linear = after.linear + struck * mass - (before.linear + velocity * mass);
     let angular =
         after.angular + point.cross(struck * mass) - (before.angular + point.cross(velocity * mass));
-    assert!(linear.length() < 1e-3 && angular.length() < 1e-3, "{linear} {angular}");
+    assert!(
+        linear.length() < 1e-3 && angular.length() < 1e-3,
+        "the momentum differs by {linear}, the angular momentum by {angular}"
+    );
 }
 
 #[test]
-fn a_wall_stops_a_bullet() {
+fn static_wall_takes_the_bullets_whole_momentum() {
     let mut world = weightless();
     let wall = box_body(Vec3::ONE, Vec3::ZERO);
     let wall = world.add_body(&BodyDef { kind: BodyKind::Static, ..wall });

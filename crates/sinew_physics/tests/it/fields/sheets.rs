@@ -35,8 +35,8 @@ fn wind(velocity: Vec3) -> Wind {
     Wind { velocity, density: 1.2, drag: 1.3, ..Wind::default() }
 }
 
-/// Returns the force of a wind on a group in its current pose, N.
-fn whole(world: &World, field: FieldId, group: GroupId) -> Vec3 {
+/// Returns the force of a field on a group in its current pose, N: the sum over its particles.
+fn total_force(world: &World, field: FieldId, group: GroupId) -> Vec3 {
     let count = world.particles(group).positions().len() as u32;
     (0..count).map(|i| world.field_force_on_particle(field, group, i)).sum()
 }
@@ -46,7 +46,7 @@ fn blown(angle: f32, wind: Wind) -> Vec3 {
     let mut world = weightless();
     let group = world.add_particles(&sheet(angle));
     let field = world.add_field(&FieldDef::new(FieldKind::Wind(wind)));
-    whole(&world, field, group)
+    total_force(&world, field, group)
 }
 
 #[test]
@@ -79,7 +79,10 @@ fn a_tilted_sheet_gets_lift() {
     let force = blown(angle, lifts(0.7));
     let (sin, cos) = sinew_math::trig::sin_cos(angle);
     close(force.x, 0.5 * 1.2 * 0.7 * 64.0 * cos * sin, 1e-4, "lift");
-    assert!(force.y.abs() < 1e-4 && force.z.abs() < 1e-4, "{force}");
+    assert!(
+        force.y.abs() < 1e-4 && force.z.abs() < 1e-4,
+        "the force must be along the expected axis: {force}"
+    );
 }
 
 #[test]
@@ -92,10 +95,11 @@ fn a_flat_sheet_reaches_terminal_velocity() {
     let velocities = world.particles(group).velocities();
     let mean = velocities.iter().copied().sum::<Vec3>() / velocities.len() as f32;
     close(-mean.y, (2.0f32 * 0.2 * 9.81 / (1.2 * 1.3)).sqrt(), 2e-3, "terminal speed of the sheet");
-    close(whole(&world, still, group).y, 0.2 * 9.81, 5e-3, "wind force must equal the sheet's weight");
+    close(total_force(&world, still, group).y, 0.2 * 9.81, 5e-3, "wind force must equal the sheet's weight");
 }
 
-/// Silk of one gram stays slower than the storm; an explicit force would give it a hundred times the storm's speed.
+/// Silk of one gram never moves faster than the storm. An explicitly integrated force would give it a hundred times the
+/// storm's speed.
 #[test]
 fn light_sheets_never_exceed_the_wind() {
     let mut world = weightless();
@@ -117,14 +121,14 @@ fn light_sheets_never_exceed_the_wind() {
 }
 
 #[test]
-fn without_faces_particles_are_balls() {
+fn wind_on_particles_without_faces_acts_as_on_balls() {
     let mut world = weightless();
     let grains = GroupDef { faces: Vec::new(), ..sheet(0.0) };
     let count = grains.particles.len() as f32;
     let group = world.add_particles(&grains);
     let field = world.add_field(&FieldDef::new(FieldKind::Wind(wind(Vec3::Y * 8.0))));
     let shadow = core::f32::consts::PI * 1e-4 * count;
-    close(whole(&world, field, group).y, 0.5 * 1.2 * 1.3 * 64.0 * shadow, 1e-4, "balls");
+    close(total_force(&world, field, group).y, 0.5 * 1.2 * 1.3 * 64.0 * shadow, 1e-4, "balls");
 }
 
 #[test]
@@ -147,12 +151,12 @@ fn a_restored_sheet_continues_equally() {
     let mut w = Writer::new();
     world.save(&mut w);
     let mut copy = World::new(WorldDef::default());
-    copy.load(&mut Reader::new(w.as_bytes())).expect("own snapshot");
+    copy.load(&mut Reader::new(w.as_bytes())).expect("the snapshot must load");
     for _ in 0..30 {
         world.step();
         copy.step();
     }
     assert_eq!(copy.hash(), world.hash());
-    let group = copy.group_ids().next().expect("the sheet");
+    let group = copy.group_ids().next().expect("the world has the sheet");
     assert_eq!(copy.particles(group).faces(), sheet(0.4).faces);
 }

@@ -73,13 +73,13 @@ fn saved(world: &World) -> Vec<u8> {
 }
 
 #[test]
-fn a_restored_world_continues_equally() {
+fn restored_world_with_fields_continues_with_the_same_bits() {
     let mut world = crowded(2.0);
     run(&mut world, 50);
     let bytes = saved(&world);
     let mut copy = World::new(WorldDef::default());
     copy.register_field(1, swirl);
-    copy.load(&mut Reader::new(&bytes)).expect("own snapshot");
+    copy.load(&mut Reader::new(&bytes)).expect("the snapshot must load");
     for step in 0..100 {
         world.step();
         copy.step();
@@ -88,7 +88,9 @@ fn a_restored_world_continues_equally() {
     for end in (0..bytes.len()).step_by(41) {
         assert!(copy.load(&mut Reader::new(&bytes[..end])).is_err());
     }
-    let error = World::new(WorldDef::default()).load(&mut Reader::new(&bytes)).expect_err("no function");
+    let error = World::new(WorldDef::default())
+        .load(&mut Reader::new(&bytes))
+        .expect_err("a world without the function must refuse the snapshot");
     assert!(error.to_string().contains("not registered"), "{error}");
 }
 
@@ -108,7 +110,7 @@ fn field_results_do_not_depend_on_threads() {
 
 #[test]
 fn a_warm_step_with_fields_allocates_nothing() {
-    // Far apart, so that no two bodies meet: another test covers contacts.
+    // The bodies are far apart, so that none meet: another test covers contacts.
     let mut world = crowded(40.0);
     run(&mut world, 20);
     let seen = allocation_counter::measure(|| run(&mut world, 50));
@@ -145,7 +147,7 @@ fn sleeper() -> (World, BodyId) {
 }
 
 #[test]
-fn fields_wake_and_keep_awake() {
+fn fields_wake_bodies_in_reach_and_gusts_keep_them_awake() {
     let up = FieldKind::Uniform(UniformGravity { acceleration: Vec3::Y });
     let (mut world, id) = sleeper();
     let region = Region::ball(Vec3::ZERO, 2.0, Fade::None);
@@ -156,7 +158,7 @@ fn fields_wake_and_keep_awake() {
     run(&mut world, 120);
     assert!(!world.is_awake(id), "a steady field must let the body sleep");
     world.remove_field(field);
-    assert!(world.is_awake(id), "it was reached");
+    assert!(world.is_awake(id), "a field that is moved to the body must wake it");
     let gusts = Some(Gusts { speed: 1.0, length: 1.0, time: 1.0, seed: 1 });
     let field = world.add_field(&FieldDef::new(FieldKind::Wind(Wind { gusts, ..Wind::default() })));
     run(&mut world, 120);
@@ -197,7 +199,7 @@ fn attached_particles_pass_forces_to_their_body() {
     run(&mut world, 60);
     let gained = 0.5 * 100.0 * 60.0 * world.def().dt();
     let found = world.velocity(body).linear.x * (world.mass(body).mass + 0.5);
-    assert!((found / gained - 1.0).abs() < 1e-3, "{found} for {gained}");
+    assert!((found / gained - 1.0).abs() < 1e-3, "the field reports {found}, the body gained {gained}");
 }
 
 /// Object that pulls a body along x.

@@ -49,12 +49,18 @@ fn snapshot_loads_in_another_world_with_the_shape_library() {
     let corners = &shapes[shapes.len() / 2..][..48];
     assert!(!state.windows(corners.len()).any(|bytes| bytes == corners), "the state must not contain shapes");
     let mut other = World::new(WorldDef::default());
-    let unknown = other.load(&mut Reader::new(&state)).expect_err("it has no shapes");
+    let unknown = other
+        .load(&mut Reader::new(&state))
+        .expect_err("a world without the shape library must refuse the snapshot");
     assert!(matches!(unknown, LoadError::UnknownShape { kind: DataKind::Hull, .. }), "{unknown}");
     assert!(unknown.to_string().starts_with("names a hull of hash "), "{unknown}");
-    assert_eq!(saved(&other), saved(&World::new(WorldDef::default())), "nothing has changed");
-    other.load_shapes(&mut Reader::new(&shapes)).expect("own library");
-    other.load(&mut Reader::new(&state)).expect("own state");
+    assert_eq!(
+        saved(&other),
+        saved(&World::new(WorldDef::default())),
+        "a refused snapshot must not change the world"
+    );
+    other.load_shapes(&mut Reader::new(&shapes)).expect("the saved shape library must load");
+    other.load(&mut Reader::new(&state)).expect("the snapshot must load");
     assert_eq!(library(&other), shapes);
     for step in 0..60 {
         world.step();
@@ -84,7 +90,7 @@ fn reset_brings_removed_hulls_back() {
 }
 
 #[test]
-fn the_hash_covers_the_content() {
+fn worlds_with_different_hull_corners_have_different_hashes() {
     let world = |half: Vec3| {
         let mut world = World::new(WorldDef::default());
         let mass = Some(Shape::Sphere { radius: 1.0 }.mass_properties(1.0));
@@ -95,7 +101,7 @@ fn the_hash_covers_the_content() {
     assert_ne!(world(Vec3::ONE), world(Vec3::new(1.0, 1.0, 1.000_1)));
 }
 
-/// Any changed byte and any cut gives an error or a valid library, never a panic.
+/// A library with changed bytes or a truncated library gives an error or a valid library, never a panic.
 #[test]
 fn damaged_shape_libraries_give_errors() {
     let bytes = library(&pebbles());

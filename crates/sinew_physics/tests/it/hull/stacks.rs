@@ -30,16 +30,16 @@ fn stack(shape: &Shape, half: f32) -> (f32, f32, usize) {
     (sunk, drift, ids.iter().filter(|&&id| !world.is_awake(id)).count())
 }
 
-/// Margins scale with the shape, so cubes of 2 cm stand like cubes of 2 m.
+/// Collision margins scale with the shape, so small cubes stand like large ones.
 #[test]
-fn small_props_are_as_solid_as_crates() {
+fn stacks_of_cubes_stand_at_every_size() {
     for half in [0.01, 0.1, 1.0] {
         for shape in [Shape::Box { half_extents: Vec3::splat(half) }, box_hull(Vec3::splat(half))] {
             let (sunk, drift, asleep) = stack(&shape, half);
             println!("{half}: sunk {sunk}, drift {drift}, {asleep} asleep");
             assert!(sunk < 0.08, "half side {half}: sunk by {sunk} half sides");
             assert!(drift < 0.02, "half side {half}: moved by {drift} half sides");
-            assert_eq!(asleep, 5, "{half}");
+            assert_eq!(asleep, 5, "half side {half}: all cubes must sleep");
         }
     }
 }
@@ -64,10 +64,10 @@ fn a_heap_comes_to_rest() {
         .collect();
     (0..600).for_each(|_| world.step());
     for &id in &ids {
-        assert!(world.penetration(id) < 0.006, "{} deep", world.penetration(id));
-        assert!(world.velocity(id).linear.length() < 0.05, "{:?}", world.velocity(id));
+        assert!(world.penetration(id) < 0.006, "a pebble is {} m deep", world.penetration(id));
+        assert!(world.velocity(id).linear.length() < 0.05, "a pebble moves at {:?}", world.velocity(id));
         let center = world.center_of_mass(id);
-        assert!(center.y > 0.03 && center.length() < 3.0, "{center}");
+        assert!(center.y > 0.03 && center.length() < 3.0, "a pebble is at {center}");
     }
 }
 

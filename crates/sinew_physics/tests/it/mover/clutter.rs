@@ -71,7 +71,7 @@ fn free_place(world: &World, random: &mut Random, def: &MoverDef) -> MoverDef {
 /// Each walk takes 90 steps at up to 50 m/s and turns sometimes. After each step the test checks that the capsule
 /// overlaps nothing, and that a ray from its last centre to the new one hits nothing.
 #[test]
-fn random_walks_in_clutter_are_never_inside_and_never_through() {
+fn random_walks_in_clutter_never_enter_or_cross_a_solid() {
     let mut random = Random::new(11);
     let (walks, each) = (cases(300, 10_000), 20);
     let mut deepest = 0.0_f32;
@@ -94,8 +94,11 @@ fn random_walks_in_clutter_are_never_inside_and_never_through() {
                 let deep = depth(&world, id);
                 deepest = if deep > deepest { deep } else { deepest };
                 assert!(deep < 1e-4, "{deep} m inside an obstacle at {now}");
-                assert!(now.x.abs() < ROOM && now.z.abs() < ROOM && now.y > 0.89, "it got out: {now}");
-                // A step up passes over a corner: up, then along.
+                assert!(
+                    now.x.abs() < ROOM && now.z.abs() < ROOM && now.y > 0.89,
+                    "the mover left the room; it is at {now}"
+                );
+                // A mover that steps up passes over a corner: first upward, then along its way.
                 let over = before + Vec3::Y * 0.4;
                 let along = |from: Vec3| world.query().any(&Ray { origin: from, direction: now - from });
                 let slides = (now - before).length() < 0.25;
@@ -143,7 +146,7 @@ fn movers_are_never_stuck_where_there_is_room() {
                         world.step();
                     }
                     if (world.mover(id).position() - from).dot(way) < 0.09 {
-                        println!("stuck: {from} toward {way}: {}", world.mover(id).position());
+                        println!("stuck on the way from {from} toward {way}: {}", world.mover(id).position());
                         stuck += 1;
                     }
                 }
@@ -152,5 +155,5 @@ fn movers_are_never_stuck_where_there_is_room() {
         }
     }
     assert!(tried > 100, "only {tried} paths were free");
-    assert_eq!(stuck, 0, "of {tried}");
+    assert_eq!(stuck, 0, "movers got stuck on {stuck} of {tried} free paths");
 }

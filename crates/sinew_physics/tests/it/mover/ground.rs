@@ -1,4 +1,4 @@
-//! Stairs, ledges, jumps, crouching.
+//! Movers on stairs and ledges, and their jumps and changes of height.
 
 use super::{block, depth, level, settle};
 use sinew_math::Vec3;
@@ -57,7 +57,7 @@ fn stairs_are_climbed_and_descended_without_leaving_the_ground() {
 }
 
 #[test]
-fn edges_above_the_step_height_are_walls() {
+fn edges_above_the_step_height_stop_a_mover() {
     for (height, climbs) in
         [(0.1, true), (0.3, true), (0.34, true), (0.37, false), (0.5, false), (1.0, false)]
     {
@@ -115,20 +115,23 @@ fn jump_height_follows_jump_speed() {
             steps += 1;
             let height = world.mover(id).position().y - from;
             top = if height > top { height } else { top };
+            // The jump requested in the air must not be executed in the step in which the mover lands.
             if world.mover(id).is_grounded() {
                 break;
             }
-            // In the air a jump has no effect.
+            // A jump in the air has no effect.
             world.mover_jump(id, speed);
             assert!(steps < 200);
         }
-        // The step in which the mover lands must not use up the last jump request.
         let expected = speed * speed / (2.0 * 9.81);
         // The highest point may be half a step away from the nearest step.
         let between = 9.81 * 0.5 * (0.5 * world.def().dt()) * (0.5 * world.def().dt());
-        assert!(top <= expected + 1e-4 && top >= expected - between - 1e-4, "{top} of {expected}");
+        assert!(
+            top <= expected + 1e-4 && top >= expected - between - 1e-4,
+            "the mover jumped {top} m high, expected {expected} m"
+        );
         let seconds = steps as f32 * world.def().dt();
-        assert!((seconds - 2.0 * speed / 9.81).abs() < 2.0 * world.def().dt(), "{seconds} s");
+        assert!((seconds - 2.0 * speed / 9.81).abs() < 2.0 * world.def().dt(), "the jump lasted {seconds} s");
     }
 }
 
@@ -148,13 +151,13 @@ fn a_mover_grows_only_where_there_is_room() {
         world.step();
         assert!(world.step_count() < 600);
     }
-    assert!(!world.set_mover_height(id, 1.8), "there is no room to stand up under the roof");
+    assert!(!world.set_mover_height(id, 1.8), "a mover must not grow under the low roof");
     assert!(world.mover(id).def().height == 1.0 && depth(&world, id) == 0.0);
     while world.mover(id).position().x < 5.0 {
         world.step();
         assert!(world.step_count() < 600);
     }
-    assert!(world.set_mover_height(id, 1.8), "there is room again");
+    assert!(world.set_mover_height(id, 1.8), "a mover must grow behind the roof");
     world.step();
     assert!(depth(&world, id) == 0.0 && world.mover(id).is_grounded());
 }
@@ -168,7 +171,7 @@ fn ground_reports_its_material() {
     let id = world.add_mover(&MoverDef::at(Vec3::new(0.0, 1.0, 0.0)));
     assert!(world.mover_ground(id).is_none());
     settle(&mut world, id);
-    let ground = world.mover_ground(id).expect("it stands");
+    let ground = world.mover_ground(id).expect("the mover stands on the ground");
     assert_eq!(ground.shape.map(|shape| shape.body), Some(stage));
     assert!(ground.material.tag == 7 && (ground.normal - Vec3::Y).length() < 1e-6);
     assert!((ground.point.y - 0.5).abs() < 1e-5 && ground.velocity == Vec3::ZERO);

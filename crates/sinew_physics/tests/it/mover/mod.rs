@@ -30,15 +30,19 @@ pub fn turned(world: &mut World, half_extents: Vec3, at: Vec3, angle: f32) -> Bo
     world.add_body(&def)
 }
 
-/// Runs two seconds, after which the mover must be on the ground.
+/// Runs two seconds and checks that the mover is then on the ground.
 pub fn settle(world: &mut World, id: MoverId) {
     for _ in 0..120 {
         world.step();
     }
-    assert!(world.mover(id).is_grounded(), "it stands at {}", world.mover(id).position());
+    assert!(
+        world.mover(id).is_grounded(),
+        "the mover must be on the ground; it is at {}",
+        world.mover(id).position()
+    );
 }
 
-/// Returns the largest penetration depth of a mover's capsule, by queries of the world, metres.
+/// Returns the largest penetration depth of a mover's capsule, metres. Uses queries of the world.
 pub fn depth(world: &World, id: MoverId) -> f32 {
     let mover = world.mover(id);
     let shape = Shape::Capsule { half_height: mover.half_height(), radius: mover.def().radius };

@@ -23,11 +23,15 @@ fn push_force_bounds_what_a_mover_moves() {
         world.set_mover_walk(id, Vec3::X * 2.0);
         for _ in 0..240 {
             world.step();
-            assert!(depth(&world, id) < 2e-3, "{mass} kg: {}", depth(&world, id));
+            assert!(
+                depth(&world, id) < 2e-3,
+                "a crate of {mass} kg is {} m inside the mover",
+                depth(&world, id)
+            );
         }
         let at = world.transform(crate_).translation;
-        assert_eq!(at.x > 2.0, moves, "{mass} kg: {at}");
-        assert!(moves || at.x < 1.6, "{mass} kg: {at}");
+        assert_eq!(at.x > 2.0, moves, "a crate of {mass} kg is at {at}");
+        assert!(moves || at.x < 1.6, "a crate of {mass} kg is at {at}");
         let behind = at.x - 0.4 - 0.3 - world.mover(id).position().x;
         assert!((-0.002..0.08).contains(&behind), "a crate of {mass} kg: the mover is {behind} m behind it");
     }
@@ -49,11 +53,19 @@ fn a_heavy_ball_pushes_a_mover_by_momentum() {
             world.step();
             let now = world.mover(id).velocity().x;
             fastest = if now > fastest { now } else { fastest };
-            assert!(depth(&world, id) < 0.01, "{speed} m/s: {}", depth(&world, id));
+            assert!(
+                depth(&world, id) < 0.01,
+                "a ball at {speed} m/s is {} m inside the mover",
+                depth(&world, id)
+            );
         }
         let after = world.velocity(ball).linear.x;
         let momentum = 200.0 * after + 80.0 * world.mover(id).velocity().x;
-        assert!((momentum - 200.0 * speed).abs() < 0.01 * 200.0 * speed, "{momentum} of {}", 200.0 * speed);
+        assert!(
+            (momentum - 200.0 * speed).abs() < 0.01 * 200.0 * speed,
+            "total momentum {momentum} N·s, expected {} N·s",
+            200.0 * speed
+        );
         let common = 200.0 / 280.0 * speed;
         assert!(
             (fastest - common).abs() < 0.05 * common,
@@ -72,13 +84,13 @@ fn a_light_ball_bounces_off_a_mover() {
     let id = world.add_mover(&MoverDef::default());
     for _ in 0..120 {
         world.step();
-        assert!(world.transform(ball).translation.x < 0.0, "it passed");
+        assert!(world.transform(ball).translation.x < 0.0, "the ball must bounce off the mover");
     }
     assert!(world.mover(id).position().x < 0.05, "{}", world.mover(id).position());
 }
 
 #[test]
-fn a_movers_weight_tips_a_plank_and_loads_a_raft() {
+fn weight_of_a_mover_tips_a_plank() {
     let mut world = level();
     let beam = Shape::Box { half_extents: Vec3::new(0.1, 0.1, 1.0) };
     world.add_body(&BodyDef::fixed(beam).at(Vec3::Y * 0.1));
@@ -94,7 +106,7 @@ fn a_movers_weight_tips_a_plank_and_loads_a_raft() {
         world.step();
     }
     let end = world.transform(plank).point(Vec3::new(2.0, 0.0, 0.0)).y;
-    assert!(end < 0.1, "its end is at {end}");
+    assert!(end < 0.1, "the plank's end must tip down; it is at height {end} m");
     assert!(world.mover(id).is_grounded() && depth(&world, id) < 2e-3, "{}", depth(&world, id));
 }
 
@@ -116,7 +128,7 @@ fn a_load_on_a_movers_head_falls_when_it_walks_away() {
 }
 
 #[test]
-fn flying_bodies_pass_a_mover_that_lets_them() {
+fn flying_bodies_below_lets_pass_pass_a_mover() {
     let after = |lets_pass: f32, mass: f32| {
         let mut world = level();
         let id = world.add_mover(&MoverDef { lets_pass, ..MoverDef::default() });
@@ -132,7 +144,7 @@ fn flying_bodies_pass_a_mover_that_lets_them() {
         let mut w = Writer::new();
         world.save(&mut w);
         let mut other = World::new(WorldDef::default());
-        other.load(&mut Reader::new(w.as_bytes())).expect("a snapshot");
+        other.load(&mut Reader::new(w.as_bytes())).expect("the snapshot must load");
         for _ in 0..10 {
             world.step();
             other.step();
@@ -224,12 +236,12 @@ fn the_work_of_a_movers_weight_is_reported() {
         work += world.work().movers;
         let now = world.energy();
         rise = now.kinetic - start.kinetic + now.potential - start.potential;
-        // The first substep already moves at the speed at its end.
+        // A substep moves bodies at the speed that they have at its end.
         let late = 0.3 * work / step as f32;
         assert!(
             rise < work + 0.1 && work < rise + late + 0.1,
             "step {step}: the energy rose by {rise} J, work {work} J"
         );
     }
-    assert!(rise > 20.0, "it tipped: {rise} J");
+    assert!(rise > 20.0, "the seesaw must tip; its energy rose by {rise} J");
 }

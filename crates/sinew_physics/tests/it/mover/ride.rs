@@ -25,7 +25,7 @@ fn a_lift_carries_a_mover() {
         let speed = if (step / 200) % 2 == 0 { 1.2 } else { -1.2 };
         world.set_velocity(lift, Velocity { linear: Vec3::Y * speed, angular: Vec3::ZERO });
         world.step();
-        assert!(world.mover(id).is_grounded(), "in step {step}");
+        assert!(world.mover(id).is_grounded(), "step {step}: the mover must stay on the ground");
         assert!(
             (over(&world) - start).length() < 1e-3,
             "step {step}: at {}, at the start {start}",
@@ -99,20 +99,23 @@ fn a_turntable_carries_and_turns_a_mover() {
     let (start, yaw) = (on(&world), world.mover(id).yaw());
     for step in 0..1200 {
         world.step();
-        assert!(world.mover(id).is_grounded(), "in step {step}");
+        assert!(world.mover(id).is_grounded(), "step {step}: the mover must stay on the ground");
         assert!((on(&world) - start).length() < 1e-3, "step {step}: at {}, at the start {start}", on(&world));
     }
     let turned = world.mover(id).yaw() - yaw;
-    assert!((turned - 1.5 * 1200.0 * world.def().dt()).abs() < 1e-3, "it turned by {turned}");
+    assert!((turned - 1.5 * 1200.0 * world.def().dt()).abs() < 1e-3, "the mover turned by {turned} rad");
     // The mover leaves with the table's velocity at its position.
     let velocity = world.mover(id).velocity();
     let at = world.mover(id).position() - world.transform(table).translation;
     let expected = Vec3::X * 0.1 + spin.cross(at);
-    assert!((velocity - expected).length() < 1e-2, "{velocity} {expected}");
+    assert!((velocity - expected).length() < 1e-2, "velocity {velocity}, expected {expected}");
     world.mover_jump(id, 3.0);
     world.step();
     let flies = world.mover(id).velocity();
-    assert!((flies - expected - Vec3::Y * (3.0 - 9.81 * world.def().dt())).length() < 2e-2, "{flies}");
+    assert!(
+        (flies - expected - Vec3::Y * (3.0 - 9.81 * world.def().dt())).length() < 2e-2,
+        "velocity after the jump {flies}"
+    );
 }
 
 #[test]
@@ -129,11 +132,11 @@ fn a_belt_carries_a_mover_and_walking_adds() {
         (world.mover(id).position() - before) / (60.0 * world.def().dt())
     };
     let rides = second(&mut world);
-    assert!((rides - Vec3::X * 1.5).length() < 1e-3, "{rides}");
+    assert!((rides - Vec3::X * 1.5).length() < 1e-3, "velocity on the belt {rides}");
     world.set_mover_walk(id, Vec3::new(-1.5, 0.0, 0.5));
     second(&mut world);
     let walks = second(&mut world);
-    assert!((walks - Vec3::Z * 0.5).length() < 1e-2, "{walks}");
+    assert!((walks - Vec3::Z * 0.5).length() < 1e-2, "walking added {walks}");
 }
 
 #[test]
@@ -143,7 +146,7 @@ fn a_moving_wall_pushes_a_mover() {
     let id = world.add_mover(&MoverDef::default());
     for _ in 0..180 {
         world.step();
-        assert!(depth(&world, id) < 1e-3, "{}", depth(&world, id));
+        assert!(depth(&world, id) < 1e-3, "the wall is {} m inside the mover", depth(&world, id));
     }
     let at = world.mover(id).position();
     assert!((at.x - (3.0 - 6.0 - 0.5)).abs() < 0.01 && at.y < 0.01, "{at}");
@@ -167,11 +170,11 @@ fn a_one_way_floor_passes_and_holds_a_mover() {
     for _ in 0..120 {
         world.step();
     }
-    assert!(world.mover(id).position().y < 0.01, "off its edge it falls");
+    assert!(world.mover(id).position().y < 0.01, "the mover must fall off the floor's edge");
 }
 
 #[test]
-fn movers_stop_each_other() {
+fn movers_stop_each_other_unless_their_filters_exclude_it() {
     let mut world = level();
     let at = |x: f32| MoverDef::at(Vec3::X * x);
     let (a, b) = (world.add_mover(&at(-2.0)), world.add_mover(&at(2.0)));
@@ -180,11 +183,11 @@ fn movers_stop_each_other() {
     for _ in 0..120 {
         world.step();
         let apart = (world.mover(b).position() - world.mover(a).position()).x;
-        assert!(apart > 0.6, "{apart}");
+        assert!(apart > 0.6, "the movers are {apart} m apart");
     }
     let apart = (world.mover(b).position() - world.mover(a).position()).x;
-    assert!(apart < 0.61, "they meet: {apart}");
-    // A mover with another filter passes.
+    assert!(apart < 0.61, "the movers must meet; they are {apart} m apart");
+    // A mover whose filter excludes other movers passes.
     let ghost = Filter { mask: 0, ..world.mover(b).def().filter };
     world.set_mover_filter(b, ghost);
     for _ in 0..120 {
@@ -216,9 +219,9 @@ fn a_mover_stands_on_another_and_a_filter_lets_it_through_walls() {
     assert!(world.mover(high).position().x > 2.0);
 }
 
-/// A support is pulled away from under a mover: the mover slips and stays.
+/// When a fast body is pulled away from under a mover, the mover stays where it is.
 #[test]
-fn a_support_pulled_away_slips_under_a_mover() {
+fn fast_support_does_not_carry_a_mover_away() {
     let mut world = level();
     let half_extents = Vec3::new(0.2, 0.03, 0.2);
     let mut def = BodyDef::dynamic(Shape::Box { half_extents }).at(Vec3::Y * 0.03);

@@ -1,4 +1,4 @@
-//! Movers in snapshots, rollbacks, threads, frames and memory, and invalid settings.
+//! Movers: snapshots, rollbacks, threads, frame lengths, allocations and invalid settings.
 
 use super::{block, level};
 use sinew_math::trig::{cos, sin};
@@ -54,7 +54,7 @@ fn a_snapshot_holds_all_mover_state() {
     world.save(&mut w);
     let bytes = w.into_bytes();
     let (mut copy, _) = busy();
-    copy.load(&mut Reader::new(&bytes)).expect("a snapshot");
+    copy.load(&mut Reader::new(&bytes)).expect("the snapshot must load");
     assert_eq!(copy.hash(), world.hash());
     for _ in 0..200 {
         run(&mut world, &ids, 1);
@@ -62,11 +62,15 @@ fn a_snapshot_holds_all_mover_state() {
         assert_eq!(copy.hash(), world.hash(), "after {} steps", world.step_count());
     }
     for length in (0..bytes.len()).step_by(97) {
-        assert!(copy.load(&mut Reader::new(&bytes[..length])).is_err(), "{length} of {} bytes", bytes.len());
+        assert!(
+            copy.load(&mut Reader::new(&bytes[..length])).is_err(),
+            "a snapshot truncated to {length} of {} bytes must be refused",
+            bytes.len()
+        );
     }
 }
 
-/// Rolls back by eight steps, in which one mover was added and another removed.
+/// Rolls back eight steps, during which one mover was added and another removed.
 #[test]
 fn rollback_repeats_the_same_path() {
     let (mut world, mut ids) = busy();
@@ -103,7 +107,10 @@ fn mover_results_do_not_depend_on_threads() {
         }
         world.hash()
     });
-    assert!(hashes[0] == hashes[1] && hashes[1] == hashes[2], "{hashes:?}");
+    assert!(
+        hashes[0] == hashes[1] && hashes[1] == hashes[2],
+        "the hashes differ between numbers of threads: {hashes:?}"
+    );
 }
 
 /// Frames at 30, 60 and 144 Hz: movers move in steps, so their positions depend only on the number of steps.
@@ -130,7 +137,7 @@ fn any_frame_length_gives_the_same_state() {
     assert_eq!(after(144), expected);
 }
 
-/// Repeats the same two seconds: after the first repetitions nothing more is allocated.
+/// Repeats the same two seconds. After the first repetitions, the steps allocate nothing.
 #[test]
 fn a_warm_step_with_movers_does_not_allocate() {
     let (mut world, ids) = busy();
@@ -159,7 +166,7 @@ fn a_warm_step_with_movers_does_not_allocate() {
 }
 
 #[test]
-fn invalid_settings_are_named() {
+fn mover_check_refuses_invalid_settings() {
     let good = MoverDef::default();
     assert!(good.check().is_ok());
     for wrong in [
@@ -174,6 +181,6 @@ fn invalid_settings_are_named() {
         MoverDef { slope_limit: 2.0, ..good.clone() },
         MoverDef { position: Vec3::splat(f32::NAN), ..good.clone() },
     ] {
-        assert!(wrong.check().is_err(), "{wrong:?}");
+        assert!(wrong.check().is_err(), "the check must refuse {wrong:?}");
     }
 }

@@ -1,4 +1,5 @@
-//! Walls, corners, wedges, seams, and speeds at which a step is longer than a wall is thick.
+//! Movers at walls, in corners and wedges, on seams, and at speeds at which they move by more than a wall's thickness
+//! in a step.
 
 use super::{block, depth, level, settle, turned};
 use sinew_math::trig::{cos, sin};
@@ -27,7 +28,7 @@ fn a_mover_stops_at_its_skin_and_slides_along_a_wall() {
         assert!(depth(&world, id) == 0.0);
     }
     let gone = world.mover(id).position().z - before;
-    assert!((gone - 240.0 * world.def().dt()).abs() < 0.01, "it slid {gone} m");
+    assert!((gone - 240.0 * world.def().dt()).abs() < 0.01, "the mover slid {gone} m");
 }
 
 #[test]
@@ -46,7 +47,10 @@ fn a_mover_reaches_its_walk_speed() {
     }
     let gone = world.mover(id).position() - before;
     let seconds = 600.0 * world.def().dt();
-    assert!((gone.z - 2.0 * seconds).abs() < 1e-3 && gone.x.abs() < 1e-4 && gone.y.abs() < 1e-3, "{gone}");
+    assert!(
+        (gone.z - 2.0 * seconds).abs() < 1e-3 && gone.x.abs() < 1e-4 && gone.y.abs() < 1e-3,
+        "the mover walked by {gone}"
+    );
 }
 
 /// Two walls meet at an angle of 90 to 5 degrees; a mover that presses into the corner does not move.
@@ -113,8 +117,11 @@ fn a_mover_does_not_catch_between_abutting_boxes() {
     for _ in 0..240 {
         world.step();
         let now = world.mover(id).position();
-        assert!((now.x - last.x - 3.0 * world.def().dt()).abs() < 2e-3, "it caught at {now}");
-        assert!((now.y - last.y).abs() < 1e-3 && world.mover(id).is_grounded(), "it hops at {now}");
+        assert!(
+            (now.x - last.x - 3.0 * world.def().dt()).abs() < 2e-3,
+            "the mover caught on an edge at {now}"
+        );
+        assert!((now.y - last.y).abs() < 1e-3 && world.mover(id).is_grounded(), "the mover hops at {now}");
         last = now;
     }
 }
@@ -136,7 +143,7 @@ fn a_mover_does_not_catch_on_mesh_seams() {
             ]);
         }
     }
-    let mesh = Mesh::new(&vertices, &triangles).expect("a mesh");
+    let mesh = Mesh::new(&vertices, &triangles).expect("the mesh is valid");
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::Mesh(mesh.into())));
     let id = world.add_mover(&MoverDef::at(Vec3::new(1.0, 0.01, 0.1)));
@@ -153,7 +160,7 @@ fn a_mover_does_not_catch_on_mesh_seams() {
             (now.x - last.x - 3.0 * world.def().dt()).abs() < 2e-3,
             "the mover is stuck at {now}, from {last}"
         );
-        assert!((now.y - last.y).abs() < 1e-3 && world.mover(id).is_grounded(), "it hops at {now}");
+        assert!((now.y - last.y).abs() < 1e-3 && world.mover(id).is_grounded(), "the mover hops at {now}");
         last = now;
     }
 }
@@ -173,7 +180,7 @@ fn thin_walls_stop_a_mover_at_50_metres_a_second() {
                     Vec3::new(0.0, 4.0, 9.0),
                     Vec3::new(0.0, -1.0, 9.0),
                 ];
-                let mesh = Mesh::new(&corners, &[[0, 2, 1], [0, 3, 2]]).expect("a mesh");
+                let mesh = Mesh::new(&corners, &[[0, 2, 1], [0, 3, 2]]).expect("the mesh is valid");
                 BodyDef::fixed(Shape::Mesh(mesh.into()))
             } else {
                 BodyDef::fixed(Shape::Box { half_extents: Vec3::new(0.005, 4.0, 9.0) })
@@ -216,7 +223,7 @@ fn mover_walks_on_slopes_up_to_its_limit_and_slides_on_steeper_ones() {
         if walks {
             assert!((at.x - (2.0 * seconds - 2.0)).abs() < 0.15, "{degrees}°: at {at} after {seconds} s");
             assert!(world.mover(id).is_grounded() && at.y > 2.0 * sin(angle), "{degrees}°: {at}");
-            let ground = world.mover_ground(id).expect("it stands");
+            let ground = world.mover_ground(id).expect("the mover stands on the slope");
             assert!((ground.normal - up).length() < 1e-3, "{degrees}°: {}", ground.normal);
             // A mover that does not walk stays in place.
             world.set_mover_walk(id, Vec3::ZERO);
@@ -241,7 +248,8 @@ fn mover_walks_on_slopes_up_to_its_limit_and_slides_on_steeper_ones() {
     }
 }
 
-/// Two walls closer than the skin that lean slightly apart: the skin would fit only high above.
+/// Two walls are closer to each other than the mover and its skin are wide, and lean slightly apart, so that the skin
+/// fits only high above the floor.
 #[test]
 fn an_upward_cleft_does_not_eject_a_mover() {
     for lean in [0.0006_f32, 0.001, 0.002, 0.005] {

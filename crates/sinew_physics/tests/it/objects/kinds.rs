@@ -1,4 +1,4 @@
-//! Kinds of objects for tests, each with a single effect.
+//! Objects for tests, each with one effect.
 
 use sinew_math::{ReadError, Reader, Vec3, Writer, max};
 use sinew_physics::*;
@@ -75,7 +75,7 @@ impl PhysicsObject for Thrust {
     }
 }
 
-/// Rod without mass that keeps the centre of a body at a distance from a point.
+/// Massless rod that keeps the centre of a body at a fixed distance from a point.
 pub struct Leash {
     pub body: BodyId,
     pub place: Vec3,
@@ -104,7 +104,7 @@ impl PhysicsObject for Leash {
     }
 }
 
-/// Ball that only particles touch; it projects them to its surface, without friction.
+/// Frictionless ball that acts on particles only, by projecting them to its surface.
 pub struct Bump {
     pub center: Vec3,
     pub radius: f32,
@@ -131,7 +131,7 @@ impl PhysicsObject for Bump {
     }
 }
 
-/// Object that runs a test's function once, at the start of a substep.
+/// Object that calls a function of the test once, at the start of a substep.
 pub struct Once<F> {
     pub act: Option<F>,
 }
@@ -151,7 +151,7 @@ impl<F: FnOnce(&mut Forces<'_>) + Send + Sync + 'static> PhysicsObject for Once<
     }
 }
 
-/// Object that runs a test's function once, after all bodies have moved.
+/// Object that calls a function of the test once, after all bodies have moved.
 pub struct OnceMoved<F> {
     pub act: Option<F>,
 }

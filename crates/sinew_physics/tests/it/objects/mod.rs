@@ -1,4 +1,4 @@
-//! Objects of the user: the order of their calls, their possible effects, and that they affect nothing else.
+//! Objects of the user: when they are called, which effects they can have, and that they change nothing else.
 
 mod kinds;
 mod state;
@@ -69,11 +69,15 @@ fn objects_without_effect_change_nothing() {
         without.step();
         assert!(poses(&with) == poses(&without) && particles(&with) == particles(&without), "step {step}");
     }
-    assert_eq!(with.object::<Counter>(counter).asked, 240 * 4 * 2, "twice in each substep");
+    assert_eq!(
+        with.object::<Counter>(counter).asked,
+        240 * 4 * 2,
+        "the object must be called twice in each substep"
+    );
 }
 
 #[test]
-fn a_force_acts_substep_by_substep() {
+fn force_of_an_object_acts_in_each_substep() {
     let mut world = weightless();
     let body = world.add_body(&sphere_body(0.1, Vec3::X));
     let mass = world.mass(body).mass;
@@ -106,7 +110,7 @@ fn an_objects_force_adds_to_fields_and_lasting_forces() {
     }
     let time = world.time() as f32;
     let moved = world.velocity(body).linear - Vec3::Z * (9.81 * time);
-    assert!(moved.length() < 1e-4, "{moved}");
+    assert!(moved.length() < 1e-4, "the forces must cancel; the body moved by {moved}");
 }
 
 #[test]
@@ -121,16 +125,19 @@ fn forces_and_impulses_match_newtons_laws() {
     });
     // The force acts in one of the four substeps.
     let Velocity { linear, angular } = world.velocity(body);
-    assert!((linear - Vec3::new(30.0 * h, 2.0, 0.0) / mass).length() < 1e-6, "{linear}");
+    assert!((linear - Vec3::new(30.0 * h, 2.0, 0.0) / mass).length() < 1e-6, "linear velocity {linear}");
     let moment = mass / 3.0 * (0.01 + 0.04);
-    assert!((angular - Vec3::Z * (5.0 * h / moment)).length() < 1e-6, "{angular}");
+    assert!((angular - Vec3::Z * (5.0 * h / moment)).length() < 1e-6, "angular velocity {angular}");
     // Away from the centre the impulse also rotates the body: p × with an arm of 0.3 m.
     act_once_moved(&mut world, move |corrections| {
         let point = corrections.center_of_mass(body) + Vec3::Z * 0.3;
         corrections.apply_impulse(body, Vec3::X, point);
     });
     let gained = world.velocity(body).angular.y - angular.y;
-    assert!((gained - 0.3 / (mass / 3.0 * (0.01 + 0.09))).abs() < 1e-3, "{gained}");
+    assert!(
+        (gained - 0.3 / (mass / 3.0 * (0.01 + 0.09))).abs() < 1e-3,
+        "the impulse added a spin of {gained} rad/s"
+    );
 }
 
 #[test]
@@ -157,7 +164,7 @@ fn objects_see_poses_of_the_current_substep() {
 }
 
 #[test]
-fn a_leash_is_a_pendulum() {
+fn body_on_a_leash_swings_like_a_pendulum() {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     let amplitude = 0.2f32;
     let (sin, cos) = (sinew_math::trig::sin(amplitude), sinew_math::trig::cos(amplitude));
@@ -175,7 +182,7 @@ fn a_leash_is_a_pendulum() {
     }
     assert!(error < 1e-5, "the length is off by {error} m");
     let period = (passes[passes.len() - 1] - passes[0]) / (passes.len() - 1) as f32;
-    // Mass on a thread: 2π √(l/g) (1 + θ²/16).
+    // Period of a point mass on a thread: 2π √(l/g) (1 + θ²/16).
     let expected = core::f32::consts::TAU * (1.0f32 / 9.81).sqrt() * (1.0 + amplitude * amplitude / 16.0);
     assert!((period / expected - 1.0).abs() < 1e-3, "period {period} s, expected {expected} s");
 }
@@ -225,7 +232,7 @@ fn responses_include_joints() {
 }
 
 #[test]
-fn particles_rest_on_an_obstacle_of_the_users_own() {
+fn particles_rest_on_a_users_obstacle() {
     let mut world = World::new(WorldDef::default());
     let at = |i: usize| Vec3::new(0.01 * (i as f32 - 4.0), 0.8 + 0.1 * i as f32, 0.0);
     let particle = |i| ParticleDef { position: at(i), velocity: Vec3::ZERO, mass: 0.01, radius: 0.02 };
@@ -242,11 +249,11 @@ fn particles_rest_on_an_obstacle_of_the_users_own() {
     assert!(nearest > 0.52 - 1e-5, "no particle may be inside; nearest {nearest} m");
     // The middle particle rests on top, the others slide down.
     let middle = world.particles(group).positions()[4];
-    assert!((middle - Vec3::Y * 0.52).length() < 1e-3, "{middle}");
+    assert!((middle - Vec3::Y * 0.52).length() < 1e-3, "the middle particle is at {middle}");
 }
 
 #[test]
-fn only_a_push_of_an_object_wakes() {
+fn objects_wake_a_body_only_by_a_push() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     let body = world.add_body(&box_body(Vec3::splat(0.2), Vec3::Y * 0.2));
@@ -263,7 +270,7 @@ fn only_a_push_of_an_object_wakes() {
         forces.apply_force_at_center(body, Vec3::ZERO);
         forces.apply_impulse(body, Vec3::ZERO, Vec3::ONE);
     });
-    assert!(!world.is_awake(body), "nothing wakes nobody");
+    assert!(!world.is_awake(body), "an object that applies nothing must not wake the body");
     act_once(&mut world, move |forces| forces.apply_force_at_center(body, Vec3::X));
     assert!(world.is_awake(body) && world.transform(body) == rest);
     assert_eq!(world.velocity(body), Velocity::default(), "a force must act from the next step on");
@@ -271,7 +278,10 @@ fn only_a_push_of_an_object_wakes() {
     let mass = world.mass(body).mass;
     act_once(&mut world, move |forces| forces.apply_impulse(body, Vec3::Y * mass, rest.translation));
     assert!(world.is_awake(body));
-    assert!((world.velocity(body).linear - Vec3::Y).length() < 1e-5, "an impulse is kept");
+    assert!(
+        (world.velocity(body).linear - Vec3::Y).length() < 1e-5,
+        "the sleeping body must keep the impulse"
+    );
     asleep(&mut world);
     act_once_moved(&mut world, move |corrections| {
         corrections.correct(body, Vec3::Y * mass, rest.translation);
@@ -280,7 +290,7 @@ fn only_a_push_of_an_object_wakes() {
 }
 
 #[test]
-fn numbers_that_are_not_finite_are_refused() {
+fn objects_cannot_apply_nonfinite_numbers() {
     let (mut world, body) = one_body();
     let group = world.add_particles(&GroupDef {
         particles: vec![ParticleDef { position: Vec3::Y, velocity: Vec3::ZERO, mass: 1.0, radius: 0.1 }],

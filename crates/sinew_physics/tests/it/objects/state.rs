@@ -1,4 +1,4 @@
-//! Objects in snapshots: exact, and robust against damaged bytes.
+//! Objects in snapshots: they are restored exactly, and damaged bytes give errors.
 
 use super::kinds::{Bump, Counter, Leash, Spring};
 use super::{mixed, panics};
@@ -6,11 +6,11 @@ use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::stage::NoProfiler;
 use sinew_physics::*;
 
-/// Returns the mixed world, with objects that push a box, hold a link and block the rope.
+/// Returns the mixed world with objects that push a box, hold a link and deflect the rope.
 pub fn inhabited() -> World {
     let mut world = mixed();
     let bodies: Vec<BodyId> = world.body_ids().collect();
-    let group = world.group_ids().next().expect("there is a rope");
+    let group = world.group_ids().next().expect("the world has a rope");
     let place = Vec3::new(-0.5, 1.5, 0.0);
     world.add_object(Box::new(Spring { body: bodies[3], place, stiffness: 300.0 }));
     world.add_object(Box::new(Counter::default()));
@@ -35,31 +35,31 @@ fn saved(world: &World) -> Vec<u8> {
 }
 
 #[test]
-fn threads_do_not_matter() {
+fn object_results_do_not_depend_on_threads() {
     let mut alone = inhabited();
     let hashes = run(&mut alone, 240);
     for threads in [1, 2, 4] {
         let mut world = inhabited();
         for (step, hash) in hashes.iter().enumerate() {
             world.step_with(&Threads::new(threads), &NoProfiler);
-            assert_eq!(world.hash(), *hash, "{threads} threads, step {step}: other hash");
+            assert_eq!(world.hash(), *hash, "{threads} threads, step {step}: the hashes differ");
         }
     }
 }
 
 #[test]
-fn a_restored_world_continues_equally() {
+fn restored_world_with_objects_continues_with_the_same_bits() {
     let mut world = inhabited();
     run(&mut world, 50);
     let bytes = saved(&world);
     let then = run(&mut world, 100);
-    world.load(&mut Reader::new(&bytes)).expect("it was saved");
+    world.load(&mut Reader::new(&bytes)).expect("the snapshot must load");
     assert_eq!(saved(&world), bytes);
     assert_eq!(run(&mut world, 100), then);
 }
 
 #[test]
-fn reset_is_exact() {
+fn reset_restores_objects_ids_and_remaining_time() {
     let mut world = inhabited();
     run(&mut world, 30);
     world.update(core::time::Duration::from_millis(7));
@@ -94,23 +94,22 @@ fn snapshots_add_and_remove_objects() {
     assert!(third != first, "a reused slot must get a new id");
     let other = saved(&world);
 
-    // Loads the state before the third object existed, then the one in which it exists again, since its kind is
-    // registered.
-    let unknown = world.load(&mut Reader::new(&both)).expect_err("the first is gone");
+    // A world that lacks an object of a snapshot can load it only if the object's kind is registered.
+    let unknown = world.load(&mut Reader::new(&both)).expect_err("the kind is not registered");
     assert!(unknown.to_string().starts_with("an object that is not there, of no known kind"), "{unknown}");
-    assert_eq!(saved(&world), other, "nothing has changed");
-    world.load(&mut Reader::new(&one)).expect("the second is there");
+    assert_eq!(saved(&world), other, "a refused snapshot must not change the world");
+    world.load(&mut Reader::new(&one)).expect("the snapshot with the second object must load");
     assert_eq!(world.object_ids().collect::<Vec<_>>(), [second]);
     world.register_kind(|| Box::new(Counter::default()));
-    world.load(&mut Reader::new(&other)).expect("the third is made");
+    world.load(&mut Reader::new(&other)).expect("loading must create the third object");
     assert_eq!(world.object::<Counter>(third).asked, 7);
-    world.load(&mut Reader::new(&both)).expect("the first is made");
+    world.load(&mut Reader::new(&both)).expect("loading must create the first object");
     assert!(!world.contains_object(third));
     assert_eq!([first, second].map(|id| world.object::<Counter>(id).asked), [3, 5]);
 
     let mut new = World::new(WorldDef::default());
     new.register_kind(|| Box::new(Counter::default()));
-    new.load(&mut Reader::new(&both)).expect("a new world loads both kinds");
+    new.load(&mut Reader::new(&both)).expect("a world with both kinds registered must load the snapshot");
     assert_eq!(new.hash(), { world.hash() });
 }
 
@@ -148,7 +147,7 @@ fn failed_object_load_returns_an_error_and_changes_nothing() {
         world.object_mut::<Careless>(careless).reads = reads;
         assert!(
             panics(|| drop(world.load(&mut Reader::new(&bytes)))),
-            "a world must refuse the snapshot of another kind"
+            "loading must panic if an object reads more or fewer bytes than it wrote"
         );
     }
 }
@@ -164,7 +163,7 @@ fn damaged_snapshots_with_objects_give_errors() {
         for flip in [0x01, 0x80, 0xff] {
             let mut wrong = bytes.clone();
             wrong[at] ^= flip;
-            // Many damaged bytes are only different numbers.
+            // Many damaged snapshots are valid, because the damage only changes a number.
             drop(other.load(&mut Reader::new(&wrong)));
         }
     }
@@ -172,7 +171,7 @@ fn damaged_snapshots_with_objects_give_errors() {
 
 #[test]
 #[should_panic(expected = "is no ")]
-fn an_object_of_another_type() {
+fn object_of_another_type_is_refused() {
     let mut world = mixed();
     let id = world.add_object(Box::new(Counter::default()));
     world.object::<Bump>(id);

@@ -1,4 +1,4 @@
-//! Balls as probes: results follow from the distance of their centres, in `f64`.
+//! Queries with balls as probes: the expected results are computed from distances to the ball's centre, in `f64`.
 
 use super::oracle::WideShape;
 use super::random::{KINDS, frame, shape};
@@ -7,7 +7,7 @@ use crate::wide::wide;
 use sinew_math::Random;
 use sinew_physics::*;
 
-/// Tolerance, metres. If round shapes overlap deeply, depths are accurate to 1e-6 of the sizes.
+/// Tolerance, metres. Depths of deeply overlapping round shapes have an error of 1e-6 of the sizes.
 const NEAR: f64 = 4e-6;
 
 #[test]
@@ -26,22 +26,32 @@ fn ball_queries_follow_centre_distances() {
         let probe = Probe::at(Shape::Sphere { radius }, center);
         let gap = wide_shape.signed_distance(wide(center)) - f64::from(radius);
 
-        let told = |what: &str| format!("case {case}: {what} of a ball of {radius} {gap} from {shape:?}");
+        let message = |what: &str| format!("case {case}: {what} of a ball of {radius} {gap} from {shape:?}");
         let way = query.first(&PenetrationOf(probe.clone()));
-        assert_eq!(query.any(&OverlapWith(probe.clone())), way.is_some(), "{}", told("overlap"));
+        assert_eq!(query.any(&OverlapWith(probe.clone())), way.is_some(), "{}", message("overlap"));
         match way {
             Some(way) => {
                 overlaps += 1;
-                assert!((gap + f64::from(way.depth)).abs() < NEAR, "{}: {way:?}", told("depth"));
+                assert!((gap + f64::from(way.depth)).abs() < NEAR, "{}: {way:?}", message("depth"));
                 let out = wide_shape.signed_distance(wide(center + way.direction * way.depth));
-                assert!((out - f64::from(radius)).abs() < NEAR, "{}: ends {out} off", told("way out"));
+                assert!(
+                    (out - f64::from(radius)).abs() < NEAR,
+                    "{}: the push-out ends {out} m from the surface",
+                    message("way out")
+                );
             }
-            None => assert!(gap > -NEAR, "{}", told("no overlap")),
+            None => assert!(gap > -NEAR, "{}", message("no overlap")),
         }
 
-        let near = query.first(&NearestToShape { probe: probe.clone(), within: 10.0 }).expect("within 10 m");
-        assert!((f64::from(near.distance) - gap).abs() < NEAR, "{}: {near:?}", told("distance"));
-        assert!(wide_shape.signed_distance(wide(near.point)).abs() < NEAR, "{}: {near:?}", told("surface"));
+        let near = query
+            .first(&NearestToShape { probe: probe.clone(), within: 10.0 })
+            .expect("the shape is within 10 m");
+        assert!((f64::from(near.distance) - gap).abs() < NEAR, "{}: {near:?}", message("distance"));
+        assert!(
+            wide_shape.signed_distance(wide(near.point)).abs() < NEAR,
+            "{}: {near:?}",
+            message("surface")
+        );
 
         let translation = (at.point(random.in_cube() * 0.8) - center) * random.range(0.3, 1.5);
         let along = |fraction: f64| {
@@ -50,7 +60,7 @@ fn ball_queries_follow_centre_distances() {
         };
         match query.first(&ShapeCast { probe, translation }) {
             Some(hit) if hit.start.is_some() => {
-                assert!(gap < NEAR && hit.fraction == 0.0, "{}", told("start"));
+                assert!(gap < NEAR && hit.fraction == 0.0, "{}", message("start of the cast"));
             }
             Some(hit) => {
                 hits += 1;
@@ -58,15 +68,15 @@ fn ball_queries_follow_centre_distances() {
                 // The cast may stop early by the touch tolerance, 1e-5 of the smaller shape and 1e-7 of the motion.
                 let there =
                     wide_shape.signed_distance(wide(center + translation * hit.fraction)) - f64::from(radius);
-                assert!(there.abs() < 1.5e-5, "{}: {hit:?} is {there} m from touching", told("hit"));
-                assert!(along(fraction) > -NEAR, "{}: {hit:?} is late", told("hit"));
+                assert!(there.abs() < 1.5e-5, "{}: {hit:?} is {there} m from touching", message("hit"));
+                assert!(along(fraction) > -NEAR, "{}: {hit:?} is late", message("hit"));
                 assert!(
                     wide_shape.signed_distance(wide(hit.point)).abs() < 1.5e-5,
                     "{}: {hit:?}",
-                    told("place")
+                    message("place")
                 );
             }
-            None => assert!(along(1.0) > -NEAR, "{}: the cast along {translation} misses", told("cast")),
+            None => assert!(along(1.0) > -NEAR, "{}: the cast along {translation} misses", message("cast")),
         }
     }
     assert!(overlaps > cases(100_000) / 20 && hits > cases(100_000) / 5, "{overlaps} overlaps, {hits} hits");

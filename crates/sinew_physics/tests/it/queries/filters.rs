@@ -27,7 +27,9 @@ fn filtered(layers: u32, mask: u32, group: i32) -> ShapeDef {
 fn met(world: &World, ids: &[BodyId], ray: &Ray, filter: QueryFilter<'_>) -> Vec<usize> {
     let mut hits = Vec::new();
     world.query().filter(filter).all(ray, &mut hits);
-    hits.iter().map(|hit| ids.iter().position(|id| *id == hit.body).expect("one of them")).collect()
+    hits.iter()
+        .map(|hit| ids.iter().position(|id| *id == hit.body).expect("the hit body is one of the row"))
+        .collect()
 }
 
 #[test]
@@ -53,7 +55,7 @@ fn query_filter_applies_layers_masks_and_groups_like_a_shape() {
 }
 
 #[test]
-fn kinds_sensors_and_exceptions() {
+fn query_filter_selects_kinds_sensors_and_exceptions() {
     let sensor = ShapeDef { sensing: Sensing::Sensor, ..ball() };
     let defs = vec![
         (BodyKind::Static, ball()),
@@ -73,7 +75,7 @@ fn kinds_sensors_and_exceptions() {
 }
 
 #[test]
-fn predicates_get_body_and_shape_number() {
+fn predicates_get_the_body_and_the_shape_index() {
     let mut world = World::new(WorldDef::default());
     let shapes = vec![
         ball(),

@@ -1,4 +1,4 @@
-//! Queries with extreme numbers, and of extreme worlds.
+//! Queries with extreme arguments, and queries of extreme worlds.
 
 use super::random::{KINDS, Populated, shape};
 use crate::cases::cases;
@@ -13,7 +13,7 @@ fn bad_vectors() -> impl Iterator<Item = Vec3> {
     BAD.into_iter().flat_map(|x| [Vec3::new(x, 0.0, 0.0), Vec3::new(0.1, x, 0.0), Vec3::new(0.0, 0.2, x)])
 }
 
-fn silent<Q: QueryKind>(world: &World, question: &Q)
+fn check_no_answer<Q: QueryKind>(world: &World, question: &Q)
 where
     Q::Answer: Copy + PartialEq + core::fmt::Debug,
 {
@@ -25,37 +25,37 @@ where
 }
 
 #[test]
-fn nonfinite_queries_have_no_answer() {
+fn queries_with_nonfinite_arguments_return_nothing() {
     let mut random = Random::new(408);
     let world = Populated::new(30, 1.0, &mut random).world;
     for bad in bad_vectors() {
-        silent(&world, &Ray { origin: bad, direction: Vec3::X });
-        silent(&world, &Ray { origin: Vec3::ZERO, direction: bad });
-        silent(&world, &ContainsPoint(bad));
-        silent(&world, &NearestTo { point: bad, within: 1.0 });
+        check_no_answer(&world, &Ray { origin: bad, direction: Vec3::X });
+        check_no_answer(&world, &Ray { origin: Vec3::ZERO, direction: bad });
+        check_no_answer(&world, &ContainsPoint(bad));
+        check_no_answer(&world, &NearestTo { point: bad, within: 1.0 });
         let ball = Shape::Sphere { radius: 1.0 };
-        silent(&world, &OverlapWith(Probe::at(ball.clone(), bad)));
-        silent(&world, &PenetrationOf(Probe::at(ball.clone(), bad)));
-        silent(&world, &NearestToShape { probe: Probe::at(ball.clone(), bad), within: 1.0 });
-        silent(&world, &ShapeCast { probe: Probe::at(ball.clone(), bad), translation: Vec3::X });
-        silent(&world, &ShapeCast { probe: Probe::at(ball, Vec3::ZERO), translation: bad });
-        silent(&world, &OverlapWith(Probe::at(Shape::Box { half_extents: bad }, Vec3::ZERO)));
+        check_no_answer(&world, &OverlapWith(Probe::at(ball.clone(), bad)));
+        check_no_answer(&world, &PenetrationOf(Probe::at(ball.clone(), bad)));
+        check_no_answer(&world, &NearestToShape { probe: Probe::at(ball.clone(), bad), within: 1.0 });
+        check_no_answer(&world, &ShapeCast { probe: Probe::at(ball.clone(), bad), translation: Vec3::X });
+        check_no_answer(&world, &ShapeCast { probe: Probe::at(ball, Vec3::ZERO), translation: bad });
+        check_no_answer(&world, &OverlapWith(Probe::at(Shape::Box { half_extents: bad }, Vec3::ZERO)));
     }
-    silent(&world, &NearestTo { point: Vec3::ZERO, within: f32::NAN });
-    silent(&world, &NearestTo { point: Vec3::ZERO, within: -1.0 });
+    check_no_answer(&world, &NearestTo { point: Vec3::ZERO, within: f32::NAN });
+    check_no_answer(&world, &NearestTo { point: Vec3::ZERO, within: -1.0 });
     for radius in [f32::NAN, -1.0, f32::INFINITY] {
-        silent(&world, &OverlapWith(Probe::at(Shape::Sphere { radius }, Vec3::ZERO)));
+        check_no_answer(&world, &OverlapWith(Probe::at(Shape::Sphere { radius }, Vec3::ZERO)));
     }
 }
 
 #[test]
 #[should_panic(expected = "a probe is convex and bounded")]
-fn half_spaces_do_not_ask() {
+fn half_space_as_a_probe_is_refused() {
     let world = World::new(WorldDef::default());
     world.query().any(&OverlapWith(Probe::at(Shape::HalfSpace, Vec3::ZERO)));
 }
 
-/// A ray of any length hits a shape on its path.
+/// A ray hits a shape on its path, however long the ray is.
 #[test]
 fn long_rays_hit() {
     let mut world = World::new(WorldDef::default());
@@ -75,7 +75,7 @@ fn long_rays_hit() {
         let id = world.add_body(&def);
         for length in [1e3f32, 1e7, 1e12, 1e17, 1e25, 1e37] {
             let ray = Ray { origin: Vec3::new(-3.0, 0.1, 0.1), direction: Vec3::X * length };
-            let hit = world.query().first(&ray).expect("it is in the way");
+            let hit = world.query().first(&ray).expect("the shape is on the ray's path");
             let place = hit.fraction * length;
             assert!((place - 2.5).abs() < 0.05, "{kind}: {hit:?}, length {length}");
         }
@@ -154,11 +154,11 @@ fn check_hits<Q: QueryKind<Answer = BodyHit> + core::fmt::Debug>(world: &World, 
     let mut hits = Vec::new();
     world.query().all(way, &mut hits);
     for hit in &hits {
-        assert!((0.0..=1.0).contains(&hit.fraction) && finite(hit.point), "{hit:?} of {way:?}");
-        assert!((hit.normal.length() - 1.0).abs() < 1e-3, "{hit:?} of {way:?}");
+        assert!((0.0..=1.0).contains(&hit.fraction) && finite(hit.point), "invalid hit {hit:?} of {way:?}");
+        assert!((hit.normal.length() - 1.0).abs() < 1e-3, "invalid hit {hit:?} of {way:?}");
         if let Some(start) = hit.start {
             let sound = start.depth >= 0.0 && start.depth.is_finite() && finite(start.direction);
-            assert!(sound, "{hit:?} of {way:?}");
+            assert!(sound, "invalid hit {hit:?} of {way:?}");
         }
     }
     assert_eq!(world.query().first(way), hits.first().copied(), "{way:?}");
@@ -173,7 +173,7 @@ fn check_near<Q: QueryKind<Answer = BodySurface> + core::fmt::Debug>(world: &Wor
 }
 
 #[test]
-fn hostile_worlds_and_questions() {
+fn extreme_queries_of_extreme_worlds_return_valid_results() {
     let mut random = Random::new(409);
     for _ in 0..cases(10_000) {
         let world = extreme_world(&mut random);

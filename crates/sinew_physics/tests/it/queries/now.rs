@@ -1,4 +1,4 @@
-//! Queries use the current poses after any change.
+//! Queries use the current poses, shapes and filters after any change.
 
 use super::random::{Populated, body, filter, frame};
 use crate::build::{box_body, floor};
@@ -10,8 +10,8 @@ use sinew_physics::{
     Sensors, Shape, ShapeDef, ShapeId, Velocity, World, WorldDef,
 };
 
-/// Checks the first hit, the containing bodies and the nearest surface, by testing every shape.
-fn agrees(populated: &Populated, random: &mut Random) {
+/// Compares the first hit of a ray, the shapes that contain a point and the nearest surface with tests of every shape.
+fn check_against_all_shapes(populated: &Populated, random: &mut Random) {
     let filter = filter(&[], random);
     let query = populated.world.query().filter(filter);
     let ray = Ray { origin: random.in_cube() * 4.0, direction: random.in_cube() * 8.0 };
@@ -33,7 +33,7 @@ fn agrees(populated: &Populated, random: &mut Random) {
 }
 
 #[test]
-fn after_every_kind_of_change() {
+fn queries_after_random_changes_match_tests_of_all_shapes() {
     let mut random = Random::new(406);
     for case in 0..cases(20_000).div_ceil(40) {
         let mut populated = Populated::new(20, 3.0, &mut random);
@@ -70,13 +70,13 @@ fn after_every_kind_of_change() {
             if populated.bodies.len() < 5 {
                 populated.add(body(3.0, &mut random));
             }
-            agrees(&populated, &mut random);
+            check_against_all_shapes(&populated, &mut random);
         }
         assert!(populated.world.step_count() > 0, "case {case}");
     }
 }
 
-/// Returns the height at which a ray from above hits a body, world, metres.
+/// Returns the height at which a ray from above hits a body, in world coordinates, metres.
 fn top(world: &World, id: BodyId) -> Option<f32> {
     let at = world.center_of_mass(id);
     let ray = Ray { origin: at + Vec3::Y * 5.0, direction: Vec3::Y * -10.0 };
@@ -90,19 +90,19 @@ fn queries_find_sleeping_and_awake_bodies_alike() {
     let id = world.add_body(&box_body(Vec3::splat(0.5), Vec3::Y * 0.5));
     while world.is_awake(id) {
         world.step();
-        assert!(world.step_count() < 200, "it lies still");
+        assert!(world.step_count() < 200, "the body must fall asleep");
     }
-    assert!((top(&world, id).expect("it lies there") - 1.0).abs() < 0.01);
+    assert!((top(&world, id).expect("the ray must hit the sleeping body") - 1.0).abs() < 0.01);
     world.set_transform(id, Transform::from_translation(Vec3::new(7.0, 3.0, 0.0)));
-    assert!((top(&world, id).expect("it was put there") - 3.5).abs() < 1e-5);
+    assert!((top(&world, id).expect("the ray must hit the moved body") - 3.5).abs() < 1e-5);
     assert!(!world.query().any(&ContainsPoint(Vec3::Y * 0.5)));
     world.remove_body(id);
     assert!(!world.query().any(&ContainsPoint(Vec3::new(7.0, 3.0, 0.0))));
 }
 
-/// Queries use the pose after the step, not before it, for any speed of the body.
+/// Queries use the pose after the step, not the pose before it, for any speed of the body.
 #[test]
-fn after_a_step_the_new_pose() {
+fn queries_after_a_step_use_the_new_pose() {
     let mut world = World::new(WorldDef::default());
     let mut def = box_body(Vec3::splat(0.1), Vec3::ZERO);
     def.linear_velocity = Vec3::X * 600.0;
@@ -135,10 +135,10 @@ fn met(world: &mut World, id: BodyId, filter: QueryFilter<'_>) -> [bool; 3] {
     [seen[0], seen[1], touches]
 }
 
-/// A change of filter takes effect immediately, also for a static body with a single shape, of which the tree keeps a
-/// copy.
+/// A change of filter takes effect immediately, also for a static body with a single shape, because the tree stores a
+/// copy of that shape.
 #[test]
-fn after_a_filter_change() {
+fn queries_use_a_changed_filter_immediately() {
     let mut world = World::new(WorldDef::default());
     let mut def = box_body(Vec3::splat(0.5), Vec3::ZERO);
     def.kind = BodyKind::Static;
@@ -155,7 +155,7 @@ fn after_a_filter_change() {
     assert_eq!([1, 2].map(|layer| met(&mut world, id, of_layer(layer))), only_second);
     world.set_filter(shape, Filter::default());
     assert_eq!([1, 2].map(|layer| met(&mut world, id, of_layer(layer))), [[true; 3]; 2]);
-    world.load(&mut Reader::new(saved.as_bytes())).expect("it is a snapshot");
+    world.load(&mut Reader::new(saved.as_bytes())).expect("the snapshot must load");
     assert_eq!([1, 2].map(|layer| met(&mut world, id, of_layer(layer))), only_second);
     world.reset();
     assert_eq!([1, 2].map(|layer| met(&mut world, id, of_layer(layer))), [[true; 3]; 2]);

@@ -1,4 +1,4 @@
-//! Shapes in `f64`, defined by their distance functions: hits of rays and moved balls are found by search.
+//! Oracle for queries: shapes in `f64`, given by their distance functions, in which hits are found by search.
 
 use crate::wide::{Wide, add, axes, dot, length, wide};
 use sinew_math::Transform;
@@ -64,12 +64,12 @@ impl<'a> WideShape<'a> {
             }
             Shape::HalfSpace => q[1],
             Shape::Hull(_) | Shape::Mesh(_) | Shape::HeightField(_) => {
-                panic!("hulls and surfaces have their own tests")
+                panic!("the oracle has no distance function for hulls and surfaces")
             }
         }
     }
 
-    /// Returns the smallest distance along a segment; the distance is a convex function of the position on the segment.
+    /// Returns the smallest signed distance along a segment, by a search: along it the distance is a convex function.
     pub fn least_distance(&self, origin: Wide, direction: Wide) -> f64 {
         let at = |t: f64| self.signed_distance(add(origin, direction, t));
         let (mut lo, mut hi) = (0.0, 1.0);

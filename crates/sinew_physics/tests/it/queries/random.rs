@@ -9,7 +9,7 @@ use sinew_physics::{
 /// Number of kinds of bounded shapes.
 pub const KINDS: usize = 7;
 
-/// Returns a bounded shape of a kind, around its origin, about a metre large.
+/// Returns a bounded shape of a kind, about 1 m across, around its origin.
 pub fn shape(kind: usize, random: &mut Random) -> Shape {
     let mut size = || random.range(0.15, 0.8);
     match kind {
@@ -54,7 +54,8 @@ pub struct Populated {
 }
 
 impl Populated {
-    /// Returns a world with this many bodies in a cube of `2 spread` above a slope; some were removed and replaced.
+    /// Returns a world with this many bodies in a cube of side `2 spread` above a slope. Some of them have been removed
+    /// and replaced.
     pub fn new(bodies: usize, spread: f32, random: &mut Random) -> Self {
         let mut populated = Self { world: World::new(WorldDef::default()), bodies: Vec::new() };
         populated.add(BodyDef {

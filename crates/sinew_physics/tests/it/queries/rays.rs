@@ -72,9 +72,9 @@ fn a_ray_enters_where_the_distance_becomes_zero() {
     assert!(hits > cases(100_000) / 3 && starts > cases(100_000) / 50, "{hits} hits, {starts} starts inside");
 }
 
-/// Shapes at the same position are ordered by their numbers, bodies by their indices.
+/// Hits at equal fractions are ordered by the bodies' indices, then by the shapes' indices.
 #[test]
-fn ties_go_by_body_and_shape() {
+fn equal_hits_are_ordered_by_body_and_shape_index() {
     let ball = ShapeDef::new(Shape::Sphere { radius: 0.5 });
     let def = BodyDef { kind: BodyKind::Static, shapes: vec![ball.clone(), ball], ..BodyDef::default() };
     let mut world = World::new(WorldDef::default());
@@ -84,7 +84,7 @@ fn ties_go_by_body_and_shape() {
     // The new body gets the index of the removed one.
     let again = world.add_body(&def);
     let ray = Ray { origin: Vec3::X * -2.0, direction: Vec3::X * 4.0 };
-    let hit = world.query().first(&ray).expect("all of them are there");
+    let hit = world.query().first(&ray).expect("the ray must hit one of the shapes");
     assert_eq!((hit.body, hit.shape), (ids[1], 0));
     let mut hits = Vec::new();
     world.query().all(&ray, &mut hits);
@@ -123,7 +123,7 @@ fn batched_queries_equal_single_queries() {
     }
 }
 
-/// A batch gives the results of single rays, for any world, any query and any ends of the rays.
+/// A batch gives the results of single rays, for any world, any filter and any start and end of the rays.
 #[test]
 fn batched_rays_hit_the_same_shapes_as_single_rays() {
     let mut random = Random::new(410);
@@ -154,7 +154,7 @@ fn batched_rays_hit_the_same_shapes_as_single_rays() {
 
 #[test]
 #[should_panic(expected = "one answer for each question")]
-fn a_batch_needs_equal_lengths() {
+fn batch_with_a_wrong_number_of_results_is_refused() {
     let ray = Ray { origin: Vec3::ZERO, direction: Vec3::X };
     World::new(WorldDef::default()).query().first_each(&[ray], &mut []);
 }

@@ -18,17 +18,20 @@ fn each_shape() -> impl Iterator<Item = (World, Shape)> {
     })
 }
 
-/// Point inside every shape, off all planes of symmetry.
+/// Point inside every shape that is on no plane of symmetry.
 const INSIDE: Vec3 = Vec3::new(0.01, -0.03, 0.02);
 
 #[test]
 fn ray_that_starts_inside_hits_at_fraction_zero() {
     for (world, shape) in each_shape() {
         for way in [Vec3::X, Vec3::NEG_Y, Vec3::Y * 100.0, Vec3::new(1.0, 2.0, 3.0)] {
-            let hit = world.query().first(&Ray { origin: INSIDE, direction: way }).expect("it starts inside");
+            let hit = world
+                .query()
+                .first(&Ray { origin: INSIDE, direction: way })
+                .expect("a query that starts inside must hit");
             assert_eq!((hit.fraction, hit.point), (0.0, INSIDE), "{shape:?}");
             assert!((hit.normal + way.normalize()).length() < 1e-6, "{shape:?}: {hit:?}");
-            let start = hit.start.expect("it starts inside");
+            let start = hit.start.expect("a query that starts inside must hit");
             let (distance, outward) = shape.signed_distance(&Transform::IDENTITY, INSIDE);
             assert_eq!((start.depth, start.direction), (-distance, outward), "{shape:?}");
         }
@@ -38,8 +41,10 @@ fn ray_that_starts_inside_hits_at_fraction_zero() {
 #[test]
 fn zero_length_ray_that_starts_inside_hits_the_shape() {
     for (world, shape) in each_shape() {
-        let hit =
-            world.query().first(&Ray { origin: INSIDE, direction: Vec3::ZERO }).expect("it starts inside");
+        let hit = world
+            .query()
+            .first(&Ray { origin: INSIDE, direction: Vec3::ZERO })
+            .expect("a query that starts inside must hit");
         let (_, outward) = shape.signed_distance(&Transform::IDENTITY, INSIDE);
         assert_eq!((hit.fraction, hit.normal), (0.0, outward), "{shape:?}");
         let outside = Ray { origin: Vec3::Y * 3.0, direction: Vec3::ZERO };
@@ -47,11 +52,11 @@ fn zero_length_ray_that_starts_inside_hits_the_shape() {
     }
 }
 
-/// A ray that starts on the surface starts inside, in any direction.
+/// A ray that starts on the surface counts as starting inside, whatever its direction.
 #[test]
-fn a_ray_that_starts_on_the_surface() {
+fn ray_that_starts_on_the_surface_hits_at_fraction_zero() {
     for (world, shape) in each_shape() {
-        // Largest number that is not above the surface.
+        // Height of the ray's origin: the largest number that is not above the surface.
         let above = |y: f32| shape.signed_distance(&Transform::IDENTITY, Vec3::Y * y).0 > 0.0;
         let (mut top, mut outside) = (0.0, 4.0);
         for _ in 0..60 {
@@ -59,27 +64,32 @@ fn a_ray_that_starts_on_the_surface() {
             if above(middle) { outside = middle } else { top = middle }
         }
         for way in [Vec3::Y, Vec3::NEG_Y, Vec3::X] {
-            let hit =
-                world.query().first(&Ray { origin: Vec3::Y * top, direction: way }).expect("it touches");
+            let hit = world
+                .query()
+                .first(&Ray { origin: Vec3::Y * top, direction: way })
+                .expect("a ray that starts on the surface must hit");
             assert_eq!((hit.fraction, hit.normal), (0.0, -way), "{shape:?}");
             let depth = hit.start.expect("touching shapes must count as overlapping").depth;
-            assert!(depth < 1e-6, "{shape:?}: {depth}");
+            assert!(depth < 1e-6, "{shape:?}: depth {depth} m");
         }
     }
 }
 
 #[test]
-fn places_inside() {
+fn points_and_probes_inside_a_shape_overlap_it() {
     for (world, shape) in each_shape() {
         assert!(world.query().any(&ContainsPoint(INSIDE)), "{shape:?}");
-        let nearest =
-            world.query().first(&NearestTo { point: INSIDE, within: 0.0 }).expect("it holds the point");
+        let nearest = world
+            .query()
+            .first(&NearestTo { point: INSIDE, within: 0.0 })
+            .expect("the nearest surface must be found from inside");
         assert!(nearest.distance < 0.0, "{shape:?}: not inside: {nearest:?}");
         let (distance, _) = shape.signed_distance(&Transform::IDENTITY, nearest.point);
-        assert!(distance.abs() < 1e-6, "{shape:?}: {distance}");
+        assert!(distance.abs() < 1e-6, "{shape:?}: the nearest point is {distance} m from the surface");
         let speck = Probe::at(Shape::Sphere { radius: 0.005 }, INSIDE);
         assert!(world.query().any(&OverlapWith(speck.clone())), "{shape:?}");
-        let way = world.query().first(&PenetrationOf(speck)).expect("wholly inside");
+        let way =
+            world.query().first(&PenetrationOf(speck)).expect("a probe inside the shape must overlap it");
         assert!(
             (way.depth + nearest.distance - 0.005).abs() < 1e-6,
             "{shape:?}: depth {way:?}, nearest {nearest:?}"
@@ -88,30 +98,31 @@ fn places_inside() {
 }
 
 #[test]
-fn a_cast_that_starts_inside() {
+fn cast_that_starts_inside_hits_at_fraction_zero() {
     for (world, shape) in each_shape() {
         let probe = Probe::at(Shape::Box { half_extents: Vec3::splat(0.01) }, INSIDE);
-        let way = world.query().first(&PenetrationOf(probe.clone())).expect("it starts inside");
+        let way =
+            world.query().first(&PenetrationOf(probe.clone())).expect("a query that starts inside must hit");
         for translation in [Vec3::X, Vec3::NEG_Y, Vec3::Y * 100.0, Vec3::new(1.0, 2.0, 3.0)] {
             let cast = ShapeCast { probe: probe.clone(), translation };
-            let hit = world.query().first(&cast).expect("it starts inside");
+            let hit = world.query().first(&cast).expect("a query that starts inside must hit");
             assert_eq!(hit.fraction, 0.0, "{shape:?}");
             assert!((hit.normal + translation.normalize()).length() < 1e-6, "{shape:?}: {hit:?}");
-            let start = hit.start.expect("it starts inside");
+            let start = hit.start.expect("a query that starts inside must hit");
             assert_eq!((start.depth, start.direction), (way.depth, way.direction), "{shape:?}");
         }
         let still = ShapeCast { probe, translation: Vec3::ZERO };
-        let hit = world.query().first(&still).expect("it starts inside");
+        let hit = world.query().first(&still).expect("a query that starts inside must hit");
         assert_eq!((hit.fraction, hit.normal), (0.0, way.direction), "{shape:?}");
         let outside = Probe::at(Shape::Sphere { radius: 0.1 }, Vec3::Y * 3.0);
         assert_eq!(world.query().first(&ShapeCast { probe: outside, translation: Vec3::ZERO }), None);
     }
 }
 
-/// A shape that rests on another touches it, and a cast from there hits in any direction; a shape slightly above may
-/// move away.
+/// A cast of a probe that rests on a shape hits it in any direction. A cast from slightly above the shape hits it only
+/// if it moves toward the shape.
 #[test]
-fn a_cast_that_starts_on_the_surface() {
+fn cast_that_starts_on_the_surface_hits_in_any_direction() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
     let at = |y: f32, translation: Vec3| {

@@ -23,7 +23,7 @@ fn world_of(shape: Shape, at: &Transform) -> World {
     world
 }
 
-/// Queries from outside give the same results for a closed mesh as for the box with the same surface; rays from inside
+/// Queries from outside give the same results for a closed mesh as for the box with the same surface. Rays from inside
 /// do not hit the mesh.
 #[test]
 fn queries_of_a_closed_mesh_equal_those_of_a_box() {
@@ -33,7 +33,7 @@ fn queries_of_a_closed_mesh_equal_those_of_a_box() {
         let half = (random.in_cube() * 0.6).abs() + Vec3::splat(0.2);
         let (corners, triangles) = cube(half);
         let at = frame(2.0, &mut random);
-        let mesh = Mesh::new(&corners, &triangles).expect("a cube");
+        let mesh = Mesh::new(&corners, &triangles).expect("the mesh is valid");
         let meshed = world_of(Shape::Mesh(Arc::new(mesh)), &at);
         let solid = world_of(Shape::Box { half_extents: half }, &at);
         let (meshed, solid) = (meshed.query(), solid.query());
@@ -47,16 +47,20 @@ fn queries_of_a_closed_mesh_equal_those_of_a_box() {
             }
             (Some(a), Some(b)) => {
                 hits += 1;
-                assert!((a.point - b.point).length() < 1e-4, "case {case}: other points: {a:?} {b:?}");
-                assert!(a.normal.dot(b.normal) > 0.999, "case {case}: other normals: {a:?} {b:?}");
+                assert!((a.point - b.point).length() < 1e-4, "case {case}: the points differ: {a:?} {b:?}");
+                assert!(a.normal.dot(b.normal) > 0.999, "case {case}: the normals differ: {a:?} {b:?}");
             }
             (a, b) => assert_eq!(a.is_some(), b.is_some(), "case {case}: {ray:?} gives {a:?} and {b:?}"),
         }
 
         let probe = Probe::new(shape(random.index(KINDS), &mut random), frame(2.0, &mut random));
-        let start = solid.first(&NearestToShape { probe: probe.clone(), within: 9.0 }).expect("near by");
+        let start = solid
+            .first(&NearestToShape { probe: probe.clone(), within: 9.0 })
+            .expect("the surface is within 9 m");
         if start.distance > 1e-5 {
-            let near = meshed.first(&NearestToShape { probe: probe.clone(), within: 9.0 }).expect("near by");
+            let near = meshed
+                .first(&NearestToShape { probe: probe.clone(), within: 9.0 })
+                .expect("the surface is within 9 m");
             assert!(
                 (near.distance - start.distance).abs() < 1e-5,
                 "case {case}: nearest {near:?}, start {start:?}"
@@ -71,7 +75,7 @@ fn queries_of_a_closed_mesh_equal_those_of_a_box() {
                 (Some(a), Some(b)) => {
                     casts += 1;
                     let apart = (a.fraction - b.fraction).abs() * translation.length();
-                    assert!(apart * closing(b) < 5e-5, "case {case}: other fractions: {a:?} {b:?}");
+                    assert!(apart * closing(b) < 5e-5, "case {case}: the fractions differ: {a:?} {b:?}");
                 }
                 (None, None) => {}
                 (a, b) => {
@@ -80,7 +84,7 @@ fn queries_of_a_closed_mesh_equal_those_of_a_box() {
                 }
             }
         } else if start.distance < -1e-4 && !meshed.any(&OverlapWith(probe.clone())) {
-            // The probe is wholly inside: it contains no point of the surface.
+            // The probe is entirely inside the solid, so it overlaps no point of the mesh.
             let middle = at.inverse_point(probe.world_from_shape.translation);
             assert!(
                 middle.abs().cmplt(half).all(),
@@ -91,25 +95,25 @@ fn queries_of_a_closed_mesh_equal_those_of_a_box() {
     assert!(hits > cases(20_000) / 3 && casts > cases(20_000) / 5, "{hits} ray hits, {casts} cast hits");
 }
 
-/// Terrain is hit from above, pushes up, and contains no points.
+/// Rays and casts hit a height field from above only. It pushes shapes upward and contains no points.
 #[test]
-fn height_fields_are_met_from_above() {
+fn height_fields_are_hit_from_above_only() {
     let (columns, rows, spacing) = (5, 5, [1.0, 1.0]);
     let def = HeightFieldDef { columns, rows, spacing, heights: vec![1.0; 25], holes: Vec::new() };
-    let field = HeightField::new(def).expect("a flat field");
+    let field = HeightField::new(def).expect("the height field is valid");
     let middle = field.bounds().center();
     let world = world_of(Shape::HeightField(Arc::new(field)), &Transform::IDENTITY);
     let query = world.query();
     let (above, below) = (middle + Vec3::Y * 2.0, middle - Vec3::Y * 2.0);
-    let hit = query.first(&Ray::between(above, below)).expect("from above");
+    let hit = query.first(&Ray::between(above, below)).expect("a ray from above must hit");
     assert!((hit.point - middle).length() < 1e-5 && (hit.normal - Vec3::Y).length() < 1e-5, "{hit:?}");
     assert_eq!(query.first(&Ray::between(below, above)), None);
     let ball = |y: f32| Probe::at(Shape::Sphere { radius: 0.25 }, middle + Vec3::Y * y);
     for y in [0.2f32, 0.1, -0.2] {
-        let way = query.first(&PenetrationOf(ball(y))).expect("it goes through");
+        let way = query.first(&PenetrationOf(ball(y))).expect("a ball through the surface must overlap it");
         assert!(
             (way.depth - (0.25 - y)).abs() < 1e-5 && (way.direction - Vec3::Y).length() < 1e-5,
-            "{y}: {way:?}"
+            "ball at height {y}: {way:?}"
         );
     }
     assert!(!query.any(&OverlapWith(ball(0.26))) && !query.any(&OverlapWith(ball(-0.26))));
@@ -123,7 +127,7 @@ fn height_fields_are_met_from_above() {
     assert_eq!(query.first(&rise), None);
     for point in [above, below] {
         assert!(!query.any(&ContainsPoint(point)));
-        let near = query.first(&NearestTo { point, within: 3.0 }).expect("2 m away");
+        let near = query.first(&NearestTo { point, within: 3.0 }).expect("the surface is 2 m away");
         assert!((near.distance - 2.0).abs() < 1e-5 && near.normal.dot(point - middle) > 0.0, "{near:?}");
     }
 }

@@ -11,10 +11,10 @@ use sinew_physics::{
     PenetrationOf, Probe, QueryFilter, QueryKind, Shape, ShapeCast, ShapeId,
 };
 
-/// Answer of one shape, with its rank in the order of answers.
+/// Function that queries one shape. Returns its answer, with a number by which the answers of all shapes are sorted.
 type One<'a, A> = &'a dyn Fn(ShapeId, &Shape, &Transform) -> Option<(f32, A)>;
 
-/// Runs a query in every way, and compares the results with the answers of all single shapes.
+/// Runs a query by `all`, `first`, `any` and `bodies`, and compares the results with the answers of all single shapes.
 fn check<Q: QueryKind>(populated: &Populated, filter: QueryFilter<'_>, question: &Q, one: One<'_, Q::Answer>)
 where
     Q::Answer: Copy + PartialEq + core::fmt::Debug,
@@ -57,7 +57,7 @@ fn in_random_worlds(seed: u64, mut ask: impl FnMut(&Populated, QueryFilter<'_>, 
 }
 
 #[test]
-fn rays() {
+fn rays_match_queries_of_every_shape() {
     let mut hits = 0;
     in_random_worlds(401, |populated, filter, random| {
         let ray = Ray { origin: random.in_cube() * 3.5, direction: random.in_cube() * 8.0 };
@@ -75,7 +75,7 @@ fn rays() {
 }
 
 #[test]
-fn points() {
+fn points_match_queries_of_every_shape() {
     in_random_worlds(402, |populated, filter, random| {
         let point = random.in_cube() * 4.0;
         check(populated, filter, &ContainsPoint(point), &|id, shape, frame| {
@@ -91,7 +91,7 @@ fn points() {
 }
 
 #[test]
-fn probes() {
+fn probes_match_queries_of_every_shape() {
     in_random_worlds(403, |populated, filter, random| {
         let probe = Probe::new(shape(random.index(KINDS), random), frame(3.5, random));
         let way = |shape: &Shape, frame: &Transform| {

@@ -15,8 +15,7 @@ pub struct Energies {
 }
 
 /// Returns the energies, with heights and springs measured half a substep back, because velocities are half a substep
-/// behind positions. At the end of the step the energy of an undamped spring would seem to rise and fall by the share
-/// `ωh/2`.
+/// behind positions. Without that, the energy of an undamped spring would vary by the share `ωh/2`.
 pub fn energies(world: &World) -> Energies {
     let back = -0.5 * world.def().dt() / world.def().substeps as f32;
     let mut sum = Energies::default();
@@ -36,7 +35,7 @@ pub fn energies(world: &World) -> Energies {
     sum
 }
 
-/// Returns the pose of a body after a time, at its current velocity.
+/// Returns the pose of a body after `time` seconds (before, if negative) at its current velocity.
 fn moved(world: &World, id: BodyId, time: f32) -> Transform {
     let (pose, v, center) = (world.transform(id), world.velocity(id), world.center_of_mass(id));
     let rotation = pose.rotation.integrate(v.angular, time);
@@ -51,18 +50,19 @@ fn stiffness(softness: Option<Softness>) -> f32 {
     }
 }
 
-/// Returns the energy of a joint in stiffnesses that are given as such, with frame B in frame A.
+/// Returns the elastic energy of a joint's weld, limit and spring, as far as their stiffnesses are given in N/m or N·m,
+/// J. `seen` is the pose of frame B in frame A.
 fn elastic(def: &JointDef, seen: &Transform) -> f32 {
     let locks = locks(&def.kind);
     let weld = stiffness(def.weld) * weld_square(&def.kind, &locks, seen);
-    let limit = stiffness(def.limit_softness) * beyond_square(&def.kind, seen);
+    let limit = stiffness(def.limit_softness) * overshoot_square(&def.kind, seen);
     let spring = def.spring.map_or(0.0, |spring| {
         stiffness(Some(spring.softness)) * spring_square(&def.kind, &locks, seen, &spring.rest)
     });
     0.5 * (weld + limit + spring)
 }
 
-/// Returns the locked directions: translations, then twist and swings.
+/// Returns which directions are locked: three translations, then the twist and two swings.
 fn locks(kind: &JointKind) -> [bool; 6] {
     match kind {
         JointKind::Ball { .. } => [true, true, true, false, false, false],
@@ -123,7 +123,7 @@ fn spring_square(kind: &JointKind, locks: &[bool; 6], seen: &Transform, rest: &T
 }
 
 /// Returns the sum of the squares of the joint's overshoots.
-fn beyond_square(kind: &JointKind, seen: &Transform) -> f32 {
+fn overshoot_square(kind: &JointKind, seen: &Transform) -> f32 {
     let square = |room: f32| min(room, 0.0) * min(room, 0.0);
     let outside = |range: Range, x: f32| square(x - range.lo) + square(range.hi - x);
     let cone = |limit: &SwingTwistLimit| square(limit.swing_state(seen.rotation).slack);

@@ -1,4 +1,4 @@
-//! Random plans of worlds, equal for equal seeds.
+//! Generates random plans of worlds. Equal seeds give equal plans.
 
 use super::joints::{self, Temper};
 use super::plan::{BodyPlan, Change, Frames, JointPlan, WorldPlan};
@@ -6,7 +6,7 @@ use super::{STEPS, chance, decades};
 use sinew_math::{Random, Rotation, Transform, Vec3, max};
 use sinew_physics::*;
 
-/// Growth of trees: joints connect a new body to the last body, which gives chains, or to any earlier body.
+/// Growth of trees: each new body is joined to the last body, which gives chains, or to any earlier body.
 #[derive(Clone, Copy)]
 enum Growth {
     Chain,
@@ -93,7 +93,7 @@ fn velocity(r: &mut Random, speed: f32) -> Velocity {
     Velocity { linear: r.in_cube() * speed, angular: r.in_cube() * (2.0 * speed) }
 }
 
-/// Adds trees that start at a fixed, moved or free body.
+/// Adds trees whose roots are static, kinematic or dynamic bodies.
 fn forest(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
     let spread = Spread::random(r);
     let count = if chance(r, 0.1) { 9 + r.index(22) } else { 2 + r.index(7) };
@@ -117,7 +117,7 @@ fn forest(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
             Growth::Chain => i - 1,
             Growth::Bush => r.index(i),
         };
-        // An anchor at a second point of the world, so that the end of the tree is held too.
+        // A static body at a second point, which holds the end of the tree too.
         if chance(r, 0.03) && plan.bodies[parent].kind == BodyKind::Dynamic {
             (body.kind, body.velocity) = (BodyKind::Static, Velocity::default());
         }
@@ -128,7 +128,8 @@ fn forest(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
     }
 }
 
-/// Returns the point at which a body is joined to another, and the body's own position then, both in the world.
+/// Returns the point at which `child` is joined to `parent`, and the position of `child` with this joint, both in world
+/// coordinates.
 fn neighbor(r: &mut Random, parent: &BodyPlan, child: &BodyPlan) -> (Vec3, Vec3) {
     let way = r.direction();
     let on = (way + r.in_cube() * 0.5).normalize();

@@ -9,8 +9,8 @@ use sinew_physics::*;
 /// Allowed features of the joints of a world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Temper {
-    /// Only features that remove energy, or store it in a way that can be computed from outside: stiffnesses given as
-    /// such (a stiffness that follows the masses changes with the pose), no motors, no soft zones.
+    /// Only features that remove energy or store energy that a test can compute: no motors, no soft zones, and only
+    /// stiffnesses in N/m or N·m (a stiffness from a frequency depends on the pose through the effective mass).
     Passive,
     /// All features.
     Driven,
@@ -57,7 +57,8 @@ pub fn joint(r: &mut Random, plan: &WorldPlan, bodies: [usize; 2], at: Vec3, tem
     joint
 }
 
-/// Returns roughly the smaller of a body's mass and its smallest moment; infinite if the body does not move.
+/// Returns roughly the smaller of a body's mass (kg) and its smallest moment of inertia (kg·m²); infinity if the body
+/// does not move.
 fn lightest(plan: &WorldPlan, body: usize) -> f32 {
     let body = &plan.bodies[body];
     let thin = body.shape.inner_radius();
@@ -134,14 +135,14 @@ fn six(r: &mut Random) -> SixDof {
     SixDof { linear, twist: axis(r, 3.0), swing_y: axis(r, 1.5), swing_z: axis(r, 1.5) }
 }
 
-/// True if soft limits are allowed. The energy of a cone limit cannot be computed from outside far beyond the limit,
-/// where its slack is exact to first order only.
+/// Returns whether soft limits are allowed. A test cannot compute the energy of a cone limit far beyond the limit,
+/// where the overshoot is exact to first order only.
 fn stores_limits(kind: &JointKind, temper: Temper) -> bool {
     let turns = matches!(kind, JointKind::Ball { .. } | JointKind::Universal { .. } | JointKind::SixDof(_));
     temper == Temper::Driven || !turns
 }
 
-/// True if springs are allowed: springs about only some axes of rotation have no potential energy.
+/// Returns whether springs are allowed: springs about only some axes of rotation have no potential energy.
 fn stores_springs(kind: &JointKind, temper: Temper) -> bool {
     temper == Temper::Driven || !matches!(kind, JointKind::SixDof(_))
 }
@@ -158,9 +159,8 @@ fn rest(r: &mut Random, kind: &JointKind) -> Transform {
     }
 }
 
-/// Returns a random softness. Passive springs are damped unless they are slow compared with a substep: an undamped
-/// spring that swings within a few substeps has no energy that can be computed from positions and velocities half a
-/// substep apart.
+/// Returns a random softness. Passive springs are damped unless they are slow compared with a substep: for an undamped
+/// spring whose period is a few substeps, no energy can be computed from positions and velocities half a substep apart.
 fn softness(r: &mut Random, temper: Temper, light: f32) -> Softness {
     if temper == Temper::Driven && chance(r, 0.5) {
         let damping_ratio = if chance(r, 0.2) { 0.0 } else { decades(r, -2.0, 1.0) };

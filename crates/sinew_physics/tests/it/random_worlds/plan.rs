@@ -9,8 +9,8 @@ pub struct WorldPlan {
     pub sleeping: Sleeping,
     /// True if the world has a half-space at height 0.
     pub floor: bool,
-    /// True if pairs that overlap at the start, or that a joint connects at any time, never collide: contacts that
-    /// separate bodies would raise weights.
+    /// True if pairs that overlap at the start, or that a joint connects at any time, never collide. Contacts that
+    /// separate overlapping bodies lift weights, which adds energy.
     pub parted: bool,
     /// True if nothing in the world releases energy except the test's own changes.
     pub passive: bool,
@@ -18,7 +18,7 @@ pub struct WorldPlan {
     pub joints: Vec<JointPlan>,
     /// Changes, each with the step before which it happens.
     pub changes: Vec<(u32, Change)>,
-    /// Step before which the world is saved.
+    /// Index of the step before which the world is saved.
     pub save_at: u32,
 }
 
@@ -55,7 +55,7 @@ pub struct JointPlan {
     pub collision: JointCollision,
 }
 
-/// Change of a running world. Objects that no longer exist are skipped.
+/// Change of a running world. A change of an object that no longer exists has no effect.
 #[derive(Clone, Debug)]
 pub enum Change {
     RemoveJoint(usize),

@@ -8,20 +8,20 @@ use sinew_physics::*;
 
 /// Largest rise of energy within a step, as a share of max(kinetic energy, 1 J/kg).
 const ENERGY_GAIN: f64 = 0.01;
-/// Share of the springs' energy that may seem to appear by rounding of poses.
+/// Allowed rise of energy from rounding of poses, as a share of the springs' energy.
 const ROUNDING: f64 = 1e-5;
-/// Largest number of steps without an energy check after a change that leaves joints open or beyond their stops; the
-/// check resumes when they have closed.
+/// Largest number of steps without an energy check after a change that leaves joints open or beyond their stops. The
+/// check resumes earlier if all joints have closed.
 const SETTLING: u32 = 60;
 /// Gap (metres) and overshoot (radians) below which a joint is closed.
 const GAP_CLOSED: f32 = 1e-3;
 const STOP_REACHED: f32 = 0.02;
-/// Largest distance of bodies between which joints are created, metres: beyond it their arms would be a hundred times
-/// the bodies' size.
+/// Largest distance of bodies between which joints are created, metres. Joints of more distant bodies would have lever
+/// arms of a hundred times the bodies' size.
 const REACH: f32 = 10.0;
-/// Steps after a save after which the world is compared with its restored copy.
+/// Number of steps after a save after which the world is compared with its restored copy.
 const TWIN_STEPS: u32 = 60;
-/// Speed of a body above which the world is violent, m/s and rad/s.
+/// Linear speed (m/s) and angular speed (rad/s) of a body above which joint gaps are not checked.
 const VIOLENT_LINEAR: f32 = 15.0;
 const VIOLENT_ANGULAR: f32 = 30.0;
 
@@ -51,7 +51,7 @@ pub struct Failure {
 /// Measurements of a run without a fault.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Figures {
-    /// Largest gap of an exact joint while all joints formed trees and the world was not violent, metres.
+    /// Largest gap of an exact joint in steps without loops of joints and without fast bodies, metres.
     pub gap: f32,
     /// Largest rise of energy, like that of [`Fault::EnergyGain`].
     pub gain: f64,
@@ -100,10 +100,10 @@ impl<'a> Run<'a> {
         (w.into_bytes(), self.ids.clone())
     }
 
-    /// Loads a saved run into a new world, so that only saved state is kept.
+    /// Loads a saved run into a new world, so that the run continues from saved state only.
     fn restored(plan: &'a WorldPlan, (bytes, ids): (Vec<u8>, Ids)) -> Self {
         let mut world = World::new(WorldDef::default());
-        world.load(&mut Reader::new(&bytes)).expect("a saved world is valid");
+        world.load(&mut Reader::new(&bytes)).expect("the snapshot must load");
         Self { plan, world, ids }
     }
 
@@ -150,7 +150,7 @@ impl<'a> Run<'a> {
             }
             Change::Reload => {
                 let (bytes, _) = self.saved();
-                self.world.load(&mut Reader::new(&bytes)).expect("a saved world is valid");
+                self.world.load(&mut Reader::new(&bytes)).expect("the snapshot must load");
             }
         }
         Some(())
@@ -209,7 +209,7 @@ impl<'a> Run<'a> {
     fn is_forest(&self) -> bool {
         let bodies: Vec<BodyId> = self.world.body_ids().collect();
         let node = |id: BodyId| match self.world.kind(id) {
-            BodyKind::Dynamic => bodies.iter().position(|&b| b == id).expect("the body is there"),
+            BodyKind::Dynamic => bodies.iter().position(|&b| b == id).expect("the body is in the world"),
             _ => bodies.len(),
         };
         let mut tree: Vec<usize> = (0..=bodies.len()).collect();
@@ -236,12 +236,13 @@ impl<'a> Run<'a> {
 #[derive(Default)]
 struct Meter {
     before: Energies,
-    /// Number of steps in which changes may still release energy.
+    /// Number of further steps in which the last change may release energy.
     settling: u32,
 }
 
 impl Meter {
-    /// Returns the rise of energy in the last step as a share, if the world itself caused it.
+    /// Returns the rise of energy in the last step as a share of max(kinetic energy, 1 J/kg), or `None` while the last
+    /// change may still release energy.
     fn rise(&mut self, run: &Run<'_>, changed: bool) -> Option<f64> {
         let now = energies(&run.world);
         let before = core::mem::replace(&mut self.before, now);

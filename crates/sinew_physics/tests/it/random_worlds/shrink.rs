@@ -8,7 +8,7 @@ use sinew_physics::*;
 /// Largest number of runs.
 const ATTEMPTS: usize = 1000;
 
-/// Returns a minimal plan that fails like the given one, and its fault.
+/// Returns the smallest plan found that fails like the given one, and its failure.
 pub fn shrunk(plan: &WorldPlan, failure: &Failure, steps: u32) -> (WorldPlan, Failure) {
     let mut least = (plan.clone(), failure.clone());
     let (mut steps, mut left) = (steps, ATTEMPTS);
@@ -27,7 +27,7 @@ pub fn shrunk(plan: &WorldPlan, failure: &Failure, steps: u32) -> (WorldPlan, Fa
     }
 }
 
-/// Returns all plans that are smaller by one change.
+/// Iterates over all plans that result from one simplification of the plan.
 fn candidates(plan: &WorldPlan) -> impl Iterator<Item = WorldPlan> {
     let bodies = (0..plan.bodies.len()).map(|i| plan.without_body(i));
     let joints = (0..plan.joints.len()).map(|j| plan.without_joint(j));
@@ -53,7 +53,7 @@ fn candidates(plan: &WorldPlan) -> impl Iterator<Item = WorldPlan> {
     bodies.chain(joints).chain(changes).chain(whole).chain(features).chain(parts)
 }
 
-/// Function that removes something from a joint or a body; returns false if it has nothing to remove.
+/// Function that removes a feature from a joint or a body. Returns false if there is nothing to remove.
 type PartCut = fn(&mut WorldPlan, usize) -> bool;
 
 const JOINT_CUTS: &[PartCut] = &[

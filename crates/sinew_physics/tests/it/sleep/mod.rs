@@ -1,4 +1,4 @@
-//! Sleep: the bodies that fall asleep, and the causes that wake them.
+//! Sleep: which bodies fall asleep, and what wakes them.
 
 mod particles;
 mod rest;
@@ -29,7 +29,7 @@ fn steps_to_sleep(world: &mut World) -> usize {
         }
         world.step();
     }
-    panic!("it comes to rest");
+    panic!("the bodies must fall asleep within {ENOUGH} steps");
 }
 
 /// A world with a crate asleep on a floor.

@@ -22,12 +22,12 @@ fn fast_particles_wake_bodies() {
     let Nap { mut world, sleeper, .. } = nap();
     world.add_particles(&grains(1.41));
     run(&mut world, 24);
-    assert!(!world.is_awake(sleeper), "they are 0.2 m away");
+    assert!(!world.is_awake(sleeper), "particles 0.2 m away must not wake the body");
     run(&mut world, 5);
     assert!(world.is_awake(sleeper));
 }
 
-/// Bodies wake by contact, not by overlapping bounds, because a world loaded from a snapshot has other bounds.
+/// Contacts wake bodies; overlapping bounds do not, because a world loaded from a snapshot has other bounds.
 #[test]
 fn overlapping_bounds_do_not_wake_a_body() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -35,7 +35,7 @@ fn overlapping_bounds_do_not_wake_a_body() {
     let plank = BodyDef::dynamic(Shape::cuboid(Vec3::new(3.0, 0.05, 0.5))).turned(slope);
     let sleeper = world.add_body(&plank);
     world.put_to_sleep(sleeper);
-    // Grains 1.4 m from the plank, within its bounds, move toward it at 1 m/s.
+    // The grains are within the plank's bounds, 1.4 m from the plank, and move toward it at 1 m/s.
     let away = slope * Vec3::Y;
     let mut flying = grains(0.0);
     for grain in &mut flying.particles {
@@ -55,7 +55,10 @@ fn bodies_under_resting_particles_sleep() {
     let id = world.add_particles(&grains(0.41));
     run(&mut world, 30);
     let group = world.particles(id);
-    assert!(group.positions().iter().all(|at| (at.y - 0.41).abs() < 1e-3), "they lie on it");
+    assert!(
+        group.positions().iter().all(|at| (at.y - 0.41).abs() < 1e-3),
+        "the particles must rest on the body"
+    );
     assert!(!world.is_awake(sleeper), "particles put down gently must not wake the body");
 }
 
@@ -98,7 +101,7 @@ fn curtain() -> (World, GroupId) {
         world.step();
         !world.particles(id).is_awake()
     });
-    assert!(asleep, "it falls asleep");
+    assert!(asleep, "the curtain must fall asleep");
     (world, id)
 }
 
@@ -110,11 +113,11 @@ fn wakes_curtain(what: &str, steps: usize, act: impl FnOnce(&mut World, GroupId)
         world.step();
         world.particles(id).is_awake()
     });
-    assert!(woke, "{what} wakes it");
+    assert!(woke, "{what} must wake the curtain");
 }
 
 #[test]
-fn a_cloth_at_rest_sleeps_where_it_is() {
+fn sleeping_cloth_does_not_move() {
     let (mut world, id) = curtain();
     let before = world.particles(id).positions().to_vec();
     let calls = world.hash();
@@ -122,23 +125,23 @@ fn a_cloth_at_rest_sleeps_where_it_is() {
     assert!(!world.particles(id).is_awake());
     assert_eq!(world.particles(id).positions(), before.as_slice());
     assert!(world.particles(id).velocities().iter().all(|v| *v == Vec3::ZERO));
-    assert_ne!(world.hash(), calls, "time goes on");
+    assert_ne!(world.hash(), calls, "the world's time must advance while the cloth sleeps");
 }
 
 #[test]
 fn changes_wake_particles() {
     wakes_curtain("a push", 1, |world, id| world.particles_mut(id).apply_impulse(40, Vec3::Z * 1e-6));
     wakes_curtain("a velocity", 1, |world, id| world.particles_mut(id).set_velocity(40, Vec3::ZERO));
-    wakes_curtain("a place", 1, |world, id| {
+    wakes_curtain("a position", 1, |world, id| {
         let at = world.particles(id).positions()[40];
         world.particles_mut(id).set_position(40, at);
     });
     wakes_curtain("a pin", 1, |world, id| world.particles_mut(id).move_pin(0, Vec3::new(-0.5, 2.01, 0.0)));
-    wakes_curtain("a call", 1, |world, id| world.particles_mut(id).wake());
-    wakes_curtain("permission taken", 1, |world, id| world.particles_mut(id).set_sleeping(Sleeping::Off));
+    wakes_curtain("`wake`", 1, |world, id| world.particles_mut(id).wake());
+    wakes_curtain("`Sleeping::Off`", 1, |world, id| world.particles_mut(id).set_sleeping(Sleeping::Off));
     wakes_curtain("an explosion", 1, |world, _| world.explode(&Explosion::new(Vec3::Y * 1.5, 2.0, 1.0)));
     wakes_curtain("gravity", 1, |world, _| world.set_gravity(Vec3::Y * -1.6));
-    wakes_curtain("wind that comes", 1, |world, _| {
+    wakes_curtain("a new wind", 1, |world, _| {
         let wind = Wind { velocity: Vec3::Z * 3.0, ..Wind::default() };
         world.add_field(&FieldDef::new(FieldKind::Wind(wind)));
     });
@@ -154,11 +157,11 @@ fn contacts_wake_particles() {
     wakes_curtain("a body that flies into it", 60, |world, _| {
         world.add_body(&ball(Vec3::new(0.0, 1.5, 2.0), Vec3::Z * -4.0));
     });
-    wakes_curtain("a slab that is led into it", 60, |world, _| {
+    wakes_curtain("a slab that is moved into it", 60, |world, _| {
         let id = world.add_body(&slab(0.2, Vec3::new(0.0, 1.5, 0.5)));
         world.set_velocity(id, linear(Vec3::Z * -1.0));
     });
-    wakes_curtain("a wall that is put there", 1, |world, _| {
+    wakes_curtain("a wall that is added at its position", 1, |world, _| {
         world.add_body(&BodyDef { kind: BodyKind::Static, ..ball(Vec3::Y * 1.5, Vec3::ZERO) });
     });
     let (mut world, id) = curtain();
@@ -193,18 +196,18 @@ fn attached_groups_and_bodies_wake_together() {
     let (mut world, id, body) = hung();
     world.apply_impulse_at_center(body, Vec3::X);
     world.step();
-    assert!(world.particles(id).is_awake(), "the rope with its box");
+    assert!(world.particles(id).is_awake(), "the rope must wake with its box");
     let (mut world, id, body) = hung();
     world.particles_mut(id).apply_impulse(3, Vec3::X * 0.1);
     world.step();
-    assert!(world.is_awake(body), "the box with its rope");
+    assert!(world.is_awake(body), "the box must wake with its rope");
     let (mut world, id, body) = hung();
     world.remove_particles(id);
     assert!(world.is_awake(body), "removing the rope must wake the box");
 }
 
 #[test]
-fn a_restored_world_sleeps_and_wakes_equally() {
+fn restored_world_sleeps_and_wakes_like_the_original() {
     let (mut world, id, body) = hung();
     let mut at_rest = Writer::new();
     world.save(&mut at_rest);
@@ -216,15 +219,15 @@ fn a_restored_world_sleeps_and_wakes_equally() {
         (roused.into_bytes(), world.hash())
     };
     let (roused, expected) = wake(&mut world);
-    world.load(&mut Reader::new(at_rest.as_bytes())).expect("it was saved");
+    world.load(&mut Reader::new(at_rest.as_bytes())).expect("the snapshot must load");
     assert!(!world.particles(id).is_awake() && !world.is_awake(body));
     run(&mut world, 10);
-    world.load(&mut Reader::new(at_rest.as_bytes())).expect("it was saved");
-    assert_eq!(wake(&mut world).1, expected, "from asleep");
+    world.load(&mut Reader::new(at_rest.as_bytes())).expect("the snapshot must load");
+    assert_eq!(wake(&mut world).1, expected, "the restored sleeping world must wake in the same way");
     let mut other = World::new(WorldDef::default());
-    other.load(&mut Reader::new(&roused)).expect("it was saved");
+    other.load(&mut Reader::new(&roused)).expect("the snapshot must load");
     run(&mut other, 50);
-    assert_eq!(other.hash(), expected, "saved between the push and the step");
+    assert_eq!(other.hash(), expected, "a world saved between the push and the step must continue equally");
 }
 
 #[test]
@@ -307,17 +310,17 @@ fn bodies_wake_when_the_particles_below_are_removed() {
     let at = world.center_of_mass(ball);
     for pin in 0..22 {
         let AttachmentTarget::World(place) = world.particles(net).attachments()[pin].target else {
-            panic!("pins are in the world");
+            panic!("all attachments of the net are to the world");
         };
         world.particles_mut(net).move_pin(pin, place - Vec3::Y * 0.5);
     }
     run(&mut world, 30);
     assert!(world.is_awake(ball), "removing the net below must wake the ball");
-    assert!((world.center_of_mass(ball) - at).y < -0.1, "it falls after it");
+    assert!((world.center_of_mass(ball) - at).y < -0.1, "the ball must fall");
 
     let (mut world, net, ball) = netted();
     world.remove_particles(net);
-    assert!(world.is_awake(ball), "the net is gone");
+    assert!(world.is_awake(ball), "removing the net must wake the ball");
 
     let (mut world, net, ball) = netted();
     world.particles_mut(net).apply_impulse(115, Vec3::Y * 1e-4);
@@ -343,8 +346,8 @@ fn a_body_in_a_net_falls_asleep() {
     });
     run(&mut world, 900);
     let at = world.center_of_mass(ball);
-    assert!(!world.is_awake(ball), "it rests");
-    assert!((0.9..1.1).contains(&at.y) && at.x.abs() < 0.05 && at.z.abs() < 0.05, "it lies at {at:?}");
+    assert!(!world.is_awake(ball), "the ball must sleep");
+    assert!((0.9..1.1).contains(&at.y) && at.x.abs() < 0.05 && at.z.abs() < 0.05, "the ball lies at {at:?}");
     run(&mut world, 300);
     assert_eq!(world.center_of_mass(ball), at, "the net must not move the sleeping ball");
 }

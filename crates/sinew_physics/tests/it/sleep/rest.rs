@@ -1,4 +1,4 @@
-//! Conditions under which bodies fall asleep, and the bodies that fall asleep together.
+//! Conditions under which bodies fall asleep, and which bodies fall asleep together.
 
 use super::{Nap, all_asleep, linear, nap, run, slab, steps_to_sleep};
 use crate::build::{ball, box_body, floor, half_space_tilted, sphere_body};
@@ -54,7 +54,7 @@ fn bodies_creeping_down_a_slope_do_not_sleep() {
     let speed = world.velocity(id).linear.length();
     assert!(
         world.is_awake(id) && (speed - expected).abs() < 0.03 * expected,
-        "{speed} m/s, expected {expected} m/s"
+        "the body slides at {speed} m/s, expected {expected} m/s"
     );
 }
 
@@ -110,7 +110,7 @@ fn slowly_pushed_bodies_do_not_sleep() {
     assert!(steps_to_sleep(&mut world) <= 40);
 }
 
-/// Object that shakes a body back and forth by `amplitude` metres, ten times per second.
+/// Object that moves a body back and forth ten times per second, by `amplitude` metres in each direction.
 struct Shaker {
     body: BodyId,
     amplitude: f32,
@@ -136,7 +136,7 @@ impl PhysicsObject for Shaker {
 }
 
 #[test]
-fn trembling_bodies_may_sleep() {
+fn bodies_that_tremble_below_the_thresholds_sleep() {
     for (amplitude, sleeps) in [(0.0005, true), (0.005, false)] {
         // The body swings about its start: x = −a cos ωt.
         let (mut world, body) = adrift(Velocity::default());
@@ -146,12 +146,12 @@ fn trembling_bodies_may_sleep() {
             world.step();
             slept |= !world.is_awake(body);
         }
-        assert_eq!(slept, sleeps, "{amplitude} m");
+        assert_eq!(slept, sleeps, "a body that trembles by {amplitude} m");
     }
 }
 
 #[test]
-fn thresholds_are_settings() {
+fn sleep_thresholds_change_the_time_to_sleep() {
     let time = |sleep_thresholds: SleepThresholds| {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, sleep_thresholds, ..WorldDef::default() });
         let velocity = Vec3::X * 0.005;
@@ -176,7 +176,7 @@ fn thresholds_are_settings() {
         SleepThresholds { spin: f32::NAN, ..default },
     ] {
         let def = WorldDef { sleep_thresholds: wrong, ..WorldDef::default() };
-        assert!(def.check().is_err(), "{wrong:?}");
+        assert!(def.check().is_err(), "the check must refuse {wrong:?}");
     }
 }
 
@@ -199,7 +199,7 @@ fn a_sleepless_body_keeps_only_its_island_awake() {
 }
 
 #[test]
-fn an_island_is_put_to_sleep_by_hand() {
+fn put_to_sleep_acts_on_the_whole_island() {
     let mut world = World::new(WorldDef::default());
     let body = |y| sphere_body(0.1, Vec3::Y * y);
     let [upper, lower, apart] = [3.0, 2.5, 1.0].map(|y| world.add_body(&body(y)));

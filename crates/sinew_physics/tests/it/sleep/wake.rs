@@ -1,4 +1,4 @@
-//! Causes that wake a sleeping body, and changes that do not.
+//! What wakes a sleeping body, and what does not.
 
 use super::{ENOUGH, Nap, all_asleep, linear, nap, run, slab, steps_to_sleep};
 use crate::build::{ball, box_body, joint, sphere_body};
@@ -11,7 +11,7 @@ fn wakes(what: &str, act: impl FnOnce(&mut Nap)) {
     let mut nap = nap();
     act(&mut nap);
     nap.world.step();
-    assert!(nap.world.is_awake(nap.sleeper), "{what} wakes");
+    assert!(nap.world.is_awake(nap.sleeper), "{what} must wake the crate");
 }
 
 /// Checks that after `act` a crate that sleeps on a floor still sleeps at the same position.
@@ -20,7 +20,10 @@ fn leaves_asleep(what: &str, act: impl FnOnce(&mut Nap)) {
     let at = nap.world.transform(nap.sleeper);
     act(&mut nap);
     run(&mut nap.world, 30);
-    assert!(!nap.world.is_awake(nap.sleeper) && nap.world.transform(nap.sleeper) == at, "{what} does not");
+    assert!(
+        !nap.world.is_awake(nap.sleeper) && nap.world.transform(nap.sleeper) == at,
+        "{what} must not wake the crate"
+    );
 }
 
 #[test]
@@ -35,10 +38,10 @@ fn changes_of_a_body_wake_it() {
         nap.world.apply_bullet_impact(nap.sleeper, 0.01, Vec3::X, Vec3::Y * 0.2);
     });
     wakes("a velocity", |nap| nap.world.set_velocity(nap.sleeper, Velocity::default()));
-    wakes("a place", |nap| nap.world.set_transform(nap.sleeper, nap.world.transform(nap.sleeper)));
-    wakes("a call", |nap| nap.world.wake(nap.sleeper));
+    wakes("a position", |nap| nap.world.set_transform(nap.sleeper, nap.world.transform(nap.sleeper)));
+    wakes("`wake`", |nap| nap.world.wake(nap.sleeper));
     wakes("an explosion", |nap| nap.world.explode(&Explosion::new(Vec3::X, 2.0, 1.0)));
-    leaves_asleep("one far away", |nap| nap.world.explode(&Explosion::new(Vec3::X * 9.0, 2.0, 1.0)));
+    leaves_asleep("an explosion far away", |nap| nap.world.explode(&Explosion::new(Vec3::X * 9.0, 2.0, 1.0)));
 }
 
 #[test]
@@ -46,13 +49,13 @@ fn lasting_forces_wake_when_added_changed_or_removed() {
     let Nap { mut world, sleeper, .. } = nap();
     let def = ForceDef { force: Vec3::Y, ..ForceDef::default() };
     let id = world.add_force(sleeper, &def);
-    assert!(world.is_awake(sleeper), "it came");
+    assert!(world.is_awake(sleeper), "adding a lasting force must wake the body");
     steps_to_sleep(&mut world);
     world.set_force(id, &ForceDef { force: Vec3::X, ..def });
-    assert!(world.is_awake(sleeper), "it changed");
+    assert!(world.is_awake(sleeper), "changing a lasting force must wake the body");
     steps_to_sleep(&mut world);
     world.remove_force(id);
-    assert!(world.is_awake(sleeper), "it went");
+    assert!(world.is_awake(sleeper), "removing a lasting force must wake the body");
 }
 
 #[test]
@@ -60,31 +63,31 @@ fn gravity_wakes_when_it_changes() {
     wakes("less gravity", |nap| nap.world.set_gravity(Vec3::Y * -1.6));
     leaves_asleep("the same gravity", |nap| nap.world.set_gravity(nap.world.def().gravity));
     let gravity = FieldDef::new(FieldKind::Uniform(UniformGravity { acceleration: Vec3::X }));
-    wakes("a field that comes", |nap| {
+    wakes("a new field", |nap| {
         nap.world.add_field(&gravity);
     });
     let Nap { mut world, sleeper, .. } = nap();
     let field = world.add_field(&gravity);
     steps_to_sleep(&mut world);
     world.set_field(field, &FieldDef::new(FieldKind::Drag(Drag::default())));
-    assert!(world.is_awake(sleeper), "a field that changes");
+    assert!(world.is_awake(sleeper), "changing a field must wake the body");
     steps_to_sleep(&mut world);
     world.remove_field(field);
-    assert!(world.is_awake(sleeper), "a field that goes");
+    assert!(world.is_awake(sleeper), "removing a field must wake the body");
 }
 
 #[test]
 fn removing_a_support_wakes_the_bodies_above() {
-    wakes("a floor that is taken out", |nap| nap.world.remove_body(nap.floor));
-    wakes("a floor that is put elsewhere", |nap| {
+    wakes("removing the floor", |nap| nap.world.remove_body(nap.floor));
+    wakes("moving the floor away", |nap| {
         nap.world.set_transform(nap.floor, Transform::from_translation(Vec3::Y * -5.0));
     });
-    wakes("a floor that it now passes through", |nap| nap.world.disable_pair(nap.sleeper, nap.floor));
+    wakes("disabling the pair with the floor", |nap| nap.world.disable_pair(nap.sleeper, nap.floor));
     let mut nap = nap();
     nap.world.remove_body(nap.floor);
     run(&mut nap.world, 60);
     let fall = 0.2 - nap.world.center_of_mass(nap.sleeper).y;
-    assert!((fall - 0.5 * 9.81 * (1.0 + 1.0 / 240.0)).abs() < 1e-2, "it fell by {fall} m");
+    assert!((fall - 0.5 * 9.81 * (1.0 + 1.0 / 240.0)).abs() < 1e-2, "the crate fell by {fall} m");
 }
 
 #[test]
@@ -99,7 +102,7 @@ fn an_awake_body_wakes_bodies_on_contact() {
         }
     }
     // A fall of 1 m takes 27.1 steps.
-    let (step, height) = woke.expect("it was hit");
+    let (step, height) = woke.expect("the falling body must wake it");
     assert!(
         (25..=28).contains(&step) && (height - 0.5).abs() < 0.1,
         "woke in step {step} at a height of {height} m"
@@ -127,7 +130,7 @@ fn a_moving_kinematic_body_wakes_its_contacts() {
         ..slab(0.2, Vec3::ZERO)
     });
     run(&mut world, 30);
-    assert!(!world.is_awake(passenger), "the ram is 0.2 m away");
+    assert!(!world.is_awake(passenger), "a ram 0.2 m away must not wake the passenger");
     run(&mut world, 20);
     assert!(world.is_awake(passenger) && world.velocity(passenger).linear.x > 0.9);
     let ahead = world.center_of_mass(passenger).x - world.center_of_mass(ram).x;
@@ -151,10 +154,10 @@ fn a_moved_anchor_wakes_jointed_bodies() {
     let (mut world, hook, bob, _) = hanging();
     world.set_velocity(hook, linear(Vec3::X * 0.01));
     world.step();
-    assert!(world.is_awake(bob), "it sets off");
+    assert!(world.is_awake(bob), "an anchor that starts to move must wake the bob");
     let (mut world, hook, bob, _) = hanging();
     world.set_transform(hook, Transform::from_translation(Vec3::X * 0.1));
-    assert!(world.is_awake(bob), "it is put elsewhere");
+    assert!(world.is_awake(bob), "moving the anchor must wake the bob");
 }
 
 #[test]
@@ -175,31 +178,31 @@ fn a_joint_wakes_its_bodies_when_it_changes() {
         let mut def = world.joint(id);
         change(&mut def);
         world.set_joint(id, &def);
-        assert!(world.is_awake(bob), "{what}");
+        assert!(world.is_awake(bob), "changing {what} must wake the bob");
     }
     let (mut world, _, bob, id) = hanging();
     world.set_joint_state(id, JointState::Disabled);
-    assert!(world.is_awake(bob), "it is switched off");
+    assert!(world.is_awake(bob), "disabling the joint must wake the bob");
     let (mut world, _, bob, id) = hanging();
     world.remove_joint(id);
-    assert!(world.is_awake(bob), "it is taken out");
+    assert!(world.is_awake(bob), "removing the joint must wake the bob");
     let (mut world, hook, bob, _) = hanging();
     let second = ball(&world, hook, bob, Vec3::ZERO);
     world.add_joint(&second);
-    assert!(world.is_awake(bob), "another comes");
+    assert!(world.is_awake(bob), "a new joint must wake the bob");
 }
 
 #[test]
-fn a_motor_wakes_when_it_gets_another_target() {
+fn setting_another_motor_target_wakes_the_body() {
     let (mut world, _, bob, id) = hanging();
     let motor = Motor::spin(0.0, 10.0);
     world.set_motor(id, Some(motor));
-    assert!(world.is_awake(bob), "it comes");
+    assert!(world.is_awake(bob), "a new motor must wake the bob");
     steps_to_sleep(&mut world);
     world.set_motor(id, Some(motor));
-    assert!(!world.is_awake(bob), "the same once more");
+    assert!(!world.is_awake(bob), "setting the same motor again must not wake the bob");
     world.set_motor(id, Some(Motor::spin(1.0, 10.0)));
-    assert!(world.is_awake(bob), "another target");
+    assert!(world.is_awake(bob), "another target must wake the bob");
 }
 
 #[test]
@@ -210,7 +213,7 @@ fn a_broken_joint_wakes_both_bodies() {
     world.step();
     assert_eq!(world.events().broken, [id]);
     run(&mut world, 30);
-    assert!(world.is_awake(bob) && world.center_of_mass(bob).y < -1.5, "it falls");
+    assert!(world.is_awake(bob) && world.center_of_mass(bob).y < -1.5, "the bob must fall");
 }
 
 fn wall(x: f32) -> BodyDef {
@@ -219,10 +222,10 @@ fn wall(x: f32) -> BodyDef {
 
 #[test]
 fn overlapping_bodies_wake_a_body() {
-    wakes("a static body that comes", |nap| {
+    wakes("a new static body", |nap| {
         nap.world.add_body(&wall(0.35));
     });
-    wakes("a static body that is put there", |nap| {
+    wakes("a static body that is moved to its position", |nap| {
         let id = nap.world.add_body(&wall(5.0));
         nap.world.set_transform(id, Transform::from_translation(Vec3::new(0.35, 0.2, 0.0)));
     });
@@ -238,21 +241,21 @@ fn overlapping_bodies_wake_a_body() {
 
 #[test]
 fn changes_without_effect_wake_nothing() {
-    leaves_asleep("a static body that comes", |nap| {
+    leaves_asleep("a new static body", |nap| {
         nap.world.add_body(&wall(0.4));
     });
-    leaves_asleep("a static body that is put beside it", |nap| {
+    leaves_asleep("a static body that is moved beside it", |nap| {
         let id = nap.world.add_body(&wall(5.0));
         nap.world.set_transform(id, Transform::from_translation(Vec3::new(0.4, 0.2, 0.0)));
     });
     leaves_asleep("a kinematic body that rests against it", |nap| {
         nap.world.add_body(&slab(0.2, Vec3::new(0.4, 0.2, 0.0)));
     });
-    leaves_asleep("a pair with another that is disabled", |nap| {
+    leaves_asleep("disabling a pair with another body", |nap| {
         let other = nap.world.add_body(&wall(0.43));
         nap.world.disable_pair(nap.sleeper, other);
     });
-    leaves_asleep("a question", |nap| {
+    leaves_asleep("a query", |nap| {
         let ray = Ray { origin: Vec3::Y, direction: -Vec3::Y };
         assert!(nap.world.query().any(&ray));
         assert_eq!(nap.world.neighbors(nap.sleeper).collect::<Vec<_>>(), [nap.floor]);
@@ -263,7 +266,7 @@ fn changes_without_effect_wake_nothing() {
         let mut bytes = Writer::new();
         nap.world.save(&mut bytes);
         let hash = nap.world.hash();
-        nap.world.load(&mut Reader::new(bytes.as_bytes())).expect("it was saved");
+        nap.world.load(&mut Reader::new(bytes.as_bytes())).expect("the snapshot must load");
         assert_eq!(nap.world.hash(), hash);
     });
     leaves_asleep("a neighbour that falls asleep", |nap| {

@@ -4,7 +4,7 @@ use super::populate;
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3};
 use sinew_physics::*;
 
-/// Share of the steps that a call precedes.
+/// Probability that a call precedes a step.
 const BUSY: f32 = 0.25;
 
 fn never_twins(p: &PairSide, q: &PairSide) -> bool {
@@ -35,7 +35,7 @@ fn dynamic(world: &World, random: &mut Random) -> Option<BodyId> {
     any(random, world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic))
 }
 
-/// True if particles are attached to a body.
+/// Returns whether particles are attached to a body.
 fn is_worn(world: &World, id: BodyId) -> bool {
     let attached = |group: &particles::ParticleGroup| {
         group.attachments().iter().any(

@@ -1,5 +1,5 @@
-//! A snapshot loaded into an unrelated world has the same future, also with another number of threads, for any contents
-//! and any calls.
+//! A new world that loads a snapshot continues like the original, also with another number of threads, for any contents
+//! of the world and any calls.
 //!
 //! Worlds of 10 to 300 bodies (500 in a long run) rest, sleep, and are pushed, joined, sensed and changed. Each is
 //! saved at random steps and continues next to the worlds that loaded its snapshots, which get the same calls.
@@ -21,13 +21,13 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Number of steps of each world, and of a world of a long run.
+/// Number of steps of each world in a test run and in a long run.
 const STEPS: usize = 300;
 const MORE_STEPS: usize = 600;
-/// Largest number of bodies of each world, and of a world of a long run.
+/// Largest number of bodies of each world in a test run and in a long run.
 const MOST: usize = 300;
 const MORE: usize = 500;
-/// Number of saves of each world.
+/// Number of snapshots that are taken of each world.
 const MOMENTS: usize = 5;
 
 /// A world that continues from a snapshot of another world.
@@ -45,8 +45,8 @@ impl Stranger {
         let (mut shapes, mut state) = (Writer::new(), Writer::new());
         original.save_shapes(&mut shapes);
         original.save(&mut state);
-        world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("a saved library is valid");
-        world.load(&mut Reader::new(state.as_bytes())).expect("a saved world is valid");
+        world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("the saved shape library must load");
+        world.load(&mut Reader::new(state.as_bytes())).expect("the snapshot must load");
         Self { world, born, threads: Threads::new(threads) }
     }
 }
@@ -56,7 +56,7 @@ fn deeds_of(seed: u64, step: usize) -> Random {
     Random::new(seed.wrapping_mul(1_000_003).wrapping_add(step as u64))
 }
 
-fn moved_on(world: &mut World, seed: u64, step: usize, threads: Option<&Threads>) -> Events {
+fn step_with_calls(world: &mut World, seed: u64, step: usize, threads: Option<&Threads>) -> Events {
     deeds::act(world, &mut deeds_of(seed, step));
     match threads {
         Some(threads) => world.step_with(threads, &NoProfiler),
@@ -66,7 +66,7 @@ fn moved_on(world: &mut World, seed: u64, step: usize, threads: Option<&Threads>
 }
 
 /// Runs the world of a seed next to the worlds that load its snapshots.
-fn meet_strangers(seed: u64, steps: usize, most: usize) {
+fn compare_with_loaded_worlds(seed: u64, steps: usize, most: usize) {
     let mut random = Random::new(seed);
     let mut world = populate::world(&mut random, most);
     let moments: Vec<usize> = (0..MOMENTS).map(|_| random.index(steps - 20)).collect();
@@ -75,13 +75,13 @@ fn meet_strangers(seed: u64, steps: usize, most: usize) {
         for _ in moments.iter().filter(|&&moment| moment == step) {
             strangers.push(Stranger::of(&world, step, 1 + strangers.len() % 2));
         }
-        let events = moved_on(&mut world, seed, step, None);
+        let events = step_with_calls(&mut world, seed, step, None);
         let hash = world.hash();
         for Stranger { world: other, born, threads } in &mut strangers {
-            let others = moved_on(other, seed, step, Some(threads));
+            let others = step_with_calls(other, seed, step, Some(threads));
             let who = format!("world {seed}, saved before step {born}, {} threads", threads.count());
-            assert_eq!(others, events, "{who}: other events in step {step}");
-            assert_eq!(other.hash(), hash, "{who}: other state after step {step}");
+            assert_eq!(others, events, "{who}: the events differ in step {step}");
+            assert_eq!(other.hash(), hash, "{who}: the state differs after step {step}");
         }
     }
 }
@@ -98,9 +98,9 @@ fn unrelated_worlds_have_the_same_future() {
     }
     let told = asked_seeds().is_some();
     for seed in seeds() {
-        meet_strangers(seed, STEPS, MOST);
+        compare_with_loaded_worlds(seed, STEPS, MOST);
         if told && (seed + 1).is_multiple_of(20) {
-            eprintln!("strangers: {} hold", seed + 1);
+            eprintln!("strangers: {} worlds passed", seed + 1);
         }
     }
 }
@@ -115,14 +115,15 @@ fn for_minutes(minutes: f32) {
     let worker = || {
         while start.elapsed().as_secs_f32() < 60.0 * minutes {
             let seed = next.fetch_add(1, Ordering::Relaxed);
-            if std::panic::catch_unwind(|| meet_strangers(seed, MORE_STEPS, MORE)).is_err() {
-                failed.lock().expect("nobody panics with it").push(seed);
+            if std::panic::catch_unwind(|| compare_with_loaded_worlds(seed, MORE_STEPS, MORE)).is_err() {
+                failed.lock().expect("no thread panics while it holds the lock").push(seed);
             }
         }
     };
     let workers = std::thread::available_parallelism().map_or(1, core::num::NonZero::get);
     std::thread::scope(|scope| (0..workers).for_each(|_| _ = scope.spawn(worker)));
-    let (end, failed) = (next.into_inner(), failed.into_inner().expect("nobody panics with it"));
+    let (end, failed) =
+        (next.into_inner(), failed.into_inner().expect("no thread panics while it holds the lock"));
     if let Some(path) = std::env::var_os("SINEW_LOG") {
         let file = std::fs::OpenOptions::new().create(true).append(true).open(path);
         let mut file = file.expect("the log can be opened");

@@ -84,7 +84,7 @@ fn ground(world: &mut World, random: &mut Random, width: f32) {
             let heights = (0..side * side).map(|_| random.range(-0.1, 0.1)).collect();
             let def =
                 HeightFieldDef { columns: side, rows: side, spacing: [1.0, 1.0], heights, holes: Vec::new() };
-            let field = Arc::new(HeightField::new(def).expect("a valid field"));
+            let field = Arc::new(HeightField::new(def).expect("the height field is valid"));
             let corner = Vec3::new(-cells as f32, 0.0, -cells as f32);
             world.add_body(&BodyDef::fixed(Shape::HeightField(field)).at(corner));
         }
@@ -92,7 +92,7 @@ fn ground(world: &mut World, random: &mut Random, width: f32) {
             let far = cells as f32;
             let corners = [(-far, -far), (far, -far), (far, far), (-far, far)];
             let points = corners.map(|(x, z)| Vec3::new(x, 0.0, z));
-            let mesh = Shape::mesh(&points, &[[0, 2, 1], [0, 3, 2]]).expect("a mesh");
+            let mesh = Shape::mesh(&points, &[[0, 2, 1], [0, 3, 2]]).expect("the mesh is valid");
             world.add_body(&BodyDef::fixed(mesh));
         }
     }
@@ -113,7 +113,7 @@ fn wall(world: &mut World, random: &mut Random, count: usize) {
     }
 }
 
-/// Adds links that hang on each other, and on the first body or on nothing.
+/// Adds a chain of links that hangs from the ground body or is free.
 fn chain(world: &mut World, random: &mut Random, ground: BodyId) {
     let start = place(random, 3.0, 4.0);
     let mut last = (random.unit() < 0.6).then_some(ground);
@@ -215,7 +215,7 @@ pub fn world(random: &mut Random, most: usize) -> World {
         let at = place(random, width, 1.5 + 0.02 * count as f32);
         world.add_body(&body(random, at));
     }
-    let ground = world.body_ids().next().expect("there is ground");
+    let ground = world.body_ids().next().expect("the world has ground");
     for _ in 0..random.index(5) {
         chain(&mut world, random, ground);
     }

@@ -127,7 +127,7 @@ fn stop(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// True if a velocity within the range of `f32` moves a body to a pose in this time.
+/// Returns whether a velocity within the range of `f32` moves a body to a pose in this time.
 fn is_near(a: &Actor, id: BodyId, to: &Transform, seconds: f32) -> bool {
     let way = to.translation - a.world.transform(id).translation;
     (way / seconds).is_finite() && way.length() / seconds < 1e30
@@ -344,7 +344,7 @@ fn set_pair_function(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// Assigns a body to an owner; it cannot be removed until it is disowned.
+/// Assigns a body to an owner, after which it cannot be removed until it is disowned.
 fn own(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.removable(n)?;
     a.note_owned("own_bodies", &id);

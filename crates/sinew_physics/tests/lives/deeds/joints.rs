@@ -147,7 +147,7 @@ fn add_by_name(a: &mut Actor, n: &mut Numbers) -> Option<()> {
             return Some(());
         }
     };
-    // The program computes the definition from its numbers.
+    // The recorded program computes the same definition from these numbers.
     if let Some(lines) = &mut a.lines {
         lines.pop();
     }

@@ -1,4 +1,4 @@
-//! Deeds: calls of a game between two steps, each drawn from a few numbers and the current objects.
+//! Deeds: calls that a game could make between two steps, chosen by random numbers from the current objects.
 
 mod bodies;
 mod joints;
@@ -11,7 +11,7 @@ use crate::actor::Actor;
 use crate::extension;
 use crate::numbers::Numbers;
 
-/// Operation on a world, drawn at random; has no effect if the world has no object to which it applies.
+/// Operation on a world with random arguments. It has no effect if the world has no object to which it applies.
 pub struct Deed {
     pub name: &'static str,
     /// Relative frequency.

@@ -22,7 +22,7 @@ fn wedge(size: f32) -> Shape {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)];
     let points: Vec<Vec3> =
         corners.iter().flat_map(|&(x, y)| [-0.7, 0.7].map(|z| Vec3::new(x, y, z) * size)).collect();
-    Shape::hull(&points).expect("a wedge is solid")
+    Shape::hull(&points).expect("the hull is valid")
 }
 
 pub fn scaled(shape: &Shape, by: f32) -> Option<Shape> {
@@ -143,12 +143,12 @@ pub fn body(n: &mut Numbers, at: Vec3) -> BodyDef {
     def
 }
 
-/// True if every shape of a body's definition is valid.
+/// Returns whether every shape of a body's definition is valid.
 pub fn is_valid(def: &BodyDef) -> bool {
     def.shapes.iter().all(|shape| shape.check().is_ok())
 }
 
-/// True if a shape other than `without` has mass.
+/// Returns whether a body has a shape with mass other than `without`.
 pub fn weighs(world: &World, id: BodyId, without: Option<u32>) -> bool {
     world.shape_ids(id).filter(|shape| Some(shape.shape) != without).any(|shape| {
         let def = world.shape_def(shape);

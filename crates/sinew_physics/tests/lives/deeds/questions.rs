@@ -1,4 +1,4 @@
-//! Queries, which change nothing and give equal answers in equal worlds.
+//! Deeds that only query the world. Equal worlds must return equal answers.
 
 use super::{Deed, others, parts};
 use crate::actor::{Actor, say};
@@ -162,15 +162,16 @@ fn query(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     query.all(&NearestTo { point: pose.translation, within: 1.0 }, &mut near);
     let firsts = (query.first(&ray), query.first(&cast), query.any(&ContainsPoint(pose.translation)));
     let nearest = query.first(&NearestToShape { probe, within: 2.0 });
-    assert_eq!(firsts.0, hits.first().copied(), "the first of all hits must equal the first hit");
+    assert_eq!(firsts.0, hits.first().copied(), "`all` must list the hit that `first` returns first");
     let mut each = [None; 2];
     query.first_each(&[ray, ray], &mut each);
-    assert_eq!(each, [firsts.0; 2], "several rays must get the same answers as single rays");
-    writeln!(a.said, "{hits:?} {shapes:?} {bodies:?} {near:?} {firsts:?} {nearest:?}").expect("memory");
+    assert_eq!(each, [firsts.0; 2], "a batch of rays must return the hits of single rays");
+    writeln!(a.said, "{hits:?} {shapes:?} {bodies:?} {near:?} {firsts:?} {nearest:?}")
+        .expect("writing to a string cannot fail");
     Some(())
 }
 
-/// Renderer that sums all lines in one vector.
+/// Renderer that adds up the end points of all lines.
 struct Sum(Vec3);
 
 impl DebugDraw for Sum {

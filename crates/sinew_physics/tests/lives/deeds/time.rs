@@ -1,4 +1,4 @@
-//! Deeds for time and state: frames of any length, snapshots, copies.
+//! Deeds that advance time or save and restore the state: frames, snapshots, copies.
 
 use super::Deed;
 use crate::actor::{Actor, Twin};
@@ -61,7 +61,7 @@ fn clone(a: &mut Actor, _: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// Marks the state, takes some steps, and resets the world.
+/// Marks the state, takes some steps, and resets the world to the mark.
 fn mark_and_reset(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let steps = 1 + n.index(8);
     ["mark", "reset", "hash"].into_iter().for_each(|name| a.count(name));

@@ -26,7 +26,7 @@ pub(in crate::scenes) const ARENA: Scene = Scene {
     build: arena,
 };
 
-/// Radius of the ring over the root of the number of mannequins, and smallest radius of the ring, metres.
+/// Radius of the ring divided by the square root of the number of mannequins, and smallest radius of the ring, metres.
 const ROOM: f32 = 1.1;
 const LEAST: f32 = 3.0;
 /// Walking speed, m/s, and distance at which a mannequin pushes, metres.
@@ -103,7 +103,7 @@ struct Watch {
     nearest: f32,
     /// Greatest height of the referee's soles, metres.
     highest: f32,
-    /// Steps in which a standing character was outside the ring.
+    /// Number of steps in which a standing character was outside the ring.
     outside: u32,
     /// Number of quarantined bodies.
     lost: u32,
@@ -179,7 +179,7 @@ impl Arena {
             watch.falls += u32::from(*event == CharacterEvent::WentLimp);
             watch.ups += u32::from(*event == CharacterEvent::Up);
         }
-        let (referee, fighters) = self.fighters.split_last().expect("there is a referee");
+        let (referee, fighters) = self.fighters.split_last().expect("the arena has a referee");
         let standing: Vec<&Mover> =
             fighters.iter().filter_map(|fighter| Some(world.mover(fighter.character.mover()?))).collect();
         for (i, mover) in standing.iter().enumerate() {

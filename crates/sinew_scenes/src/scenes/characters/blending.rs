@@ -1,4 +1,4 @@
-//! Characters that play several tracks at the same time.
+//! Characters that play several animation tracks at the same time.
 
 use crate::framework::actors::{Actor, Cast, Figure, Gone};
 use crate::framework::camera_hint::CameraHint;
@@ -181,7 +181,7 @@ struct Runner {
     cadence: f32,
     /// Distance along z so far, metres.
     way: f32,
-    /// Largest difference of the two tracks' shares of a lap.
+    /// Largest difference between the two tracks' phases, in laps.
     phase_gap: f32,
 }
 

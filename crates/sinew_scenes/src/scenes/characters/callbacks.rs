@@ -122,8 +122,8 @@ impl Footsteps {
         }
     }
 
-    /// Times at which a footfall should have been reported so far: the clip time passes `T = e + k L`, forward up to the end of a
-    /// stretch, backward down to it.
+    /// Returns the times at which a footfall should have been reported so far: those at which the clip time passes
+    /// `e + k L`, for footfalls at `e` in laps of length `L`.
     fn expected(&self, foot: usize, world: &World) -> Vec<f64> {
         let dt = f64::from(world.def().dt());
         let (lap, fall) = (f64::from(self.lap), f64::from(self.falls[foot]));

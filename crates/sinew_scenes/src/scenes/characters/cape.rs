@@ -36,7 +36,7 @@ const LONG: f32 = 0.96;
 /// Number of springs along the cape's edges; its particles are less than two radii apart.
 const COLUMNS: u32 = 9;
 const ROWS: u32 = 24;
-/// Number of threads that go straight back from the shoulders, clear of the arms, before the cape hangs down.
+/// Number of springs, from the upper edge down, that start horizontally backward from the shoulders, clear of the arms.
 const STANDS_OFF: u32 = 2;
 /// Radius of each particle, metres.
 const RADIUS: f32 = 0.02;
@@ -124,7 +124,7 @@ struct Worn {
     watch: Watch,
 }
 
-/// Number of threads along both directions, without the diagonal braces of cells.
+/// Number of springs along both directions, without the diagonals of cells.
 const THREADS: u32 = COLUMNS * (ROWS + 1) + ROWS * (COLUMNS + 1);
 
 impl Worn {
@@ -137,7 +137,8 @@ impl Worn {
         self.character.def().body_named(SHOULDERS).expect("the character has a chest")
     }
 
-    /// Depth of the deepest free particle's centre in one of the bodies, metres; negative: outside.
+    /// Returns the depth of the deepest free particle's centre in one of the bodies, metres; negative if all are
+    /// outside.
     fn deepest(&self, world: &World, bodies: impl Iterator<Item = BodyId>) -> f32 {
         let group = world.particles(self.cape);
         let bounds = group.bounds();

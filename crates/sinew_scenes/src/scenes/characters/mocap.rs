@@ -67,7 +67,7 @@ impl Build {
         }
     }
 
-    /// The mannequin with these proportions, its skin drawn over the new bones.
+    /// Returns the mannequin with these proportions and its skin adapted to the new bones.
     fn rig(&self, from: &Rig) -> Rig {
         let mut rig = from.clone();
         for joint in &mut rig.joints {
@@ -160,7 +160,7 @@ struct Character {
 impl Character {
     /// Creates a character that plays a performance, which can be retargeted.
     fn new(world: &mut World, of: &Performance, rig: &Rig, build: &Build, loop_mode: LoopMode) -> Self {
-        let fitted = of.fitted(rig).expect("both are humanoids");
+        let fitted = of.fitted(rig).expect("both rigs are humanoids");
         let mut cast = Cast::of(rig.clone());
         let clip = cast.add(&fitted.clip(rig, "motion"), Vec::new());
         let mut actor = Actor::new(&Arc::new(cast), Transform::from_translation(build.place));
@@ -187,7 +187,8 @@ impl Character {
         100.0 * self.fitted.feet.slide[1].mean / self.height
     }
 
-    /// Expected length of a clip relative to the actor's: by Froude's law the root of the ratio of leg lengths.
+    /// Expected duration of a clip relative to the actor's: by Froude's law, the square root of the ratio of leg
+    /// lengths.
     fn pace(&self) -> Expected {
         Expected::near(self.fitted.scale.sqrt(), 1e-6)
     }

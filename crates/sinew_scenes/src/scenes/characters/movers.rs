@@ -121,7 +121,7 @@ struct Course {
 }
 
 struct Watch {
-    /// Greatest height of each mover's feet since all movers stand, metres.
+    /// Greatest height of each mover's feet since all movers came to rest, metres.
     highest: [f32; 6],
     deepest: f32,
     /// Number of steps in which a mover on the stairs, the ramp or the table was off the ground.

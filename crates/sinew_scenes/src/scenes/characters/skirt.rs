@@ -75,7 +75,7 @@ struct Dressed {
     watch: Watch,
 }
 
-/// Number of threads of a garment along both directions, without the diagonal braces of cells.
+/// Number of springs of a garment along both directions, without the diagonals of cells.
 fn threads(group: &ParticleGroup, closed: bool) -> usize {
     let lines = group.attachments().len();
     let rows = group.positions().len() / lines - 1;
@@ -88,9 +88,9 @@ impl Dressed {
         local_to_model(&self.character.def().rig, self.character.pose(), &root, &mut self.model);
     }
 
-    /// Returns the largest depth of a free particle's centre, metres: in a body of the wearer, in another body, and of
-    /// particles that touch two bodies; 0 if all are outside. Where a clip folds the thigh on the belly, or lays a leg
-    /// on the floor, a particle between the two cannot be outside of both.
+    /// Returns the largest depths of free particles' centres, metres: in a body of the wearer, in another body, and of
+    /// particles that touch two bodies; 0 if all are outside. A particle between two touching bodies, such as thigh and
+    /// belly, cannot be outside of both.
     fn deepest(&self, world: &World, id: GroupId) -> [f32; 3] {
         let (group, own) = (world.particles(id), self.character.bodies());
         let bounds = group.bounds();

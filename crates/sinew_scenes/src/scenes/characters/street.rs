@@ -40,7 +40,7 @@ const SPEEDS: (f32, f32) = (0.8, 1.5);
 /// Number of steps between reversals of the lift, and its speed, m/s.
 const LIFT_TURNS: u64 = 150;
 const LIFT: f32 = 0.8;
-/// Index of the character that a user may control; there is free space around it.
+/// Index of the character that a user may control. The space around it is free.
 const LED: usize = 1;
 /// Step at which the last character jumps.
 const JUMPS: u64 = 90;

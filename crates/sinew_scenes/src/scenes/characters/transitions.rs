@@ -116,8 +116,8 @@ struct Transitions {
     alone: [(Actor, History); 2],
     clips: [ClipId; 2],
     seconds: f32,
-    /// Bound of each joint's acceleration, rad/s²: its value in either clip, and `6 |x₀|/t₁² + 4 |v₀|/t₁`, each the
-    /// largest so far.
+    /// Bound of each joint's acceleration, rad/s²: the largest value so far of the acceleration in a clip plus
+    /// `6 |x₀|/t₁² + 4 |v₀|/t₁`.
     bounds: Vec<f32>,
     gone: Gone,
 }
@@ -147,8 +147,8 @@ impl Transitions {
         }
     }
 
-    /// Updates the bounds. They use the largest distance of the clips, and the largest rate at which they separate, during
-    /// the transition.
+    /// Updates the bounds. They use the largest distance of the clips, and the largest rate at which they separate,
+    /// during the transition.
     fn watch(&mut self, dt: f32) {
         let [(_, first), (_, second)] = &self.alone;
         let joints = self.subjects[0].actor.animator.pose().len();

@@ -131,12 +131,12 @@ impl RootWalk {
     }
 }
 
-/// Share of its cycle at which the track of an actor is, 0..1.
+/// Position of an actor's track in its cycle, as a share of the cycle, 0..1.
 fn share_of_lap(actor: &Actor, cycle: &Cycle) -> f32 {
     actor.animator.tracks().next().map_or(0.0, |track| track.playhead().clip_time() / cycle.clip.duration)
 }
 
-/// Phase of a foot in its own cycle: the right one half a cycle behind the left.
+/// Phase of a foot in its own cycle. The right foot is half a cycle behind the left one.
 fn phase_of(foot: usize, lap: f32) -> f32 {
     match foot {
         0 => lap,
@@ -228,7 +228,7 @@ fn ground(height: f32) -> BodyDef {
     };
     let heights = (0..columns * rows).map(wave).collect();
     let def = HeightFieldDef { columns, rows, spacing: [SPACING; 2], heights, holes: Vec::new() };
-    let field = HeightField::new(def).expect("waves are a height field");
+    let field = HeightField::new(def).expect("the height field is valid");
     let corner = Vec3::new((columns - 1) as f32, 0.0, (rows - 1) as f32) * (-0.5 * SPACING);
     fixed(body(Shape::HeightField(Arc::new(field)), corner))
 }

@@ -51,9 +51,9 @@ fn build(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Coin { coin, turn: Turn::default(), due: 0.0, looks: 0, asleep: None, flight })
 }
 
-/// Rate at which the contact point circles while the centre of mass stays at rest, rad/s, for sine and cosine of the tilt: the torque of
-/// the weight turns the tilted angular momentum. For a thin disc it is `√(4 g / (a sin θ))` (Moffatt 2000, "Euler's disk and its
-/// finite-time singularity").
+/// Rate at which the contact point circles while the centre of mass stays at rest, rad/s, for sine and cosine of the
+/// tilt: the torque of the weight turns the tilted angular momentum. For a thin disc it is `√(4 g / (a sin θ))`
+/// (Moffatt 2000, "Euler's disk and its finite-time singularity").
 fn rate(sin: f32, cos: f32) -> f32 {
     let (a, h) = (RADIUS, HALF_THICKNESS);
     // Moments of inertia divided by the mass.

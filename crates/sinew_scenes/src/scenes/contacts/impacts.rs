@@ -91,7 +91,7 @@ impl Script for ElasticPairs {
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let mut metrics: Vec<_> = self.pairs.iter().flat_map(|pair| pair.metrics(world)).collect();
         let speed = |&id: &BodyId| world.velocity(id).linear;
-        let (last, others) = self.row.split_last().expect("the row has five");
+        let (last, others) = self.row.split_last().expect("the row has five balls");
         let left = others.iter().fold(0.0, |most, id| max(most, speed(id).length()));
         metrics.push(Metric::new("last_of_row_m_s", speed(last).x, Expected::near(SPEEDS[0], 1e-3)));
         metrics.push(Metric::new("left_in_row_m_s", left, Expected::AtMost(4e-3)));
@@ -158,7 +158,7 @@ impl Script for Cradle {
             self.quarter = Some(world.time() as f32 - ago * world.def().dt());
         }
         self.before = first;
-        let (last, others) = self.balls.split_last().expect("there are five");
+        let (last, others) = self.balls.split_last().expect("the cradle has five balls");
         if lean(last) > self.out {
             self.out = lean(last);
             self.left_behind = others.iter().fold(0.0, |most, ball| max(most, lean(ball).abs()));

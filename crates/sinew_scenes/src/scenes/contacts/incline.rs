@@ -54,7 +54,7 @@ pub(in crate::scenes) const ROLLS: Scene = Scene {
 
 const BALL_RADIUS: f32 = 0.25;
 
-/// The friction angle of the default is 26.565°.
+/// Coefficient of friction. With the default the friction angle is 26.565°.
 const FRICTION: Setting = Setting::number("friction", 0.5, (0.0, 2.0), "coefficient");
 
 const HALF_EXTENTS: Vec3 = Vec3::new(0.3, 0.1, 0.3);

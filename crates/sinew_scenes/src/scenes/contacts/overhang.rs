@@ -18,8 +18,8 @@ pub(in crate::scenes) const BLOCK_OVERHANG: Scene = Scene {
     build: block_overhang,
 };
 
-/// Half the length of a plank, metres. Contacts sink by their slop, 2 % of the thickness but at most 5 mm: with planks
-/// this long and thin the slop tilts a stack by less than its margin.
+/// Half the length of a plank, metres. Contacts sink by their slop, 2 % of the thickness but at most 5 mm. Planks of
+/// this length and thickness tilt by the slop, but less than the 2 % that the overhang leaves.
 const HALF_LENGTH: f32 = 2.0;
 const HALF_WIDTH: f32 = 0.3;
 const TABLE: Vec3 = Vec3::new(6.0, 2.0, 5.0);

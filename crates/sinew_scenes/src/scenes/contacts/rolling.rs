@@ -1,4 +1,4 @@
-//! Bodies that friction makes roll.
+//! Bodies that start to roll by friction.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};

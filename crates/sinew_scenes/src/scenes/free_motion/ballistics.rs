@@ -53,7 +53,7 @@ impl Script for Thrown {
         let drop = fallen(world);
         let height = f64::from(self.velocity.y) * world.time() - drop;
         let range = f64::from(self.velocity.x) * world.time();
-        // Rounding error of a position and a velocity of this size in every substep.
+        // The tolerance is the rounding error of a position and a velocity of this size, added up over all substeps.
         let tolerance = 6e-6 * (drop + range.abs());
         vec![
             Metric::new("x_m", at.x, Expected::Near { value: range, tolerance }),

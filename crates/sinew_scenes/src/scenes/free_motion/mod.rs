@@ -1,4 +1,4 @@
-//! Motion that nothing touches: throws, orbits, spinning bodies, forces, rotations.
+//! Motion without contacts and joints: throws, orbits, spinning bodies, forces, rotations.
 
 pub(super) mod ballistics;
 pub(super) mod forces;

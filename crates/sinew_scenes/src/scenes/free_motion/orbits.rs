@@ -240,8 +240,8 @@ pub(in crate::scenes) const THREE_BODIES: Scene = Scene {
     build: three_bodies,
 };
 
-/// Period of the figure with `G`, masses and size 1 (Chenciner and Montgomery, Annals of Mathematics 152, 2000; numbers by
-/// Simó).
+/// Period of the figure with `G`, masses and size 1 (Chenciner and Montgomery, Annals of Mathematics 152, 2000; numbers
+/// by Simó).
 const EIGHT_PERIOD: f32 = 6.325_914;
 
 fn three_bodies(setup: &Setup<'_>) -> Instance {

@@ -148,13 +148,13 @@ impl Journey {
     /// Quaternion that maps the first position to the second.
     fn quotient(&self, world: &World) -> Quaternion {
         let at = |id| world.center_of_mass(id);
-        Quaternion::quotient(at(self.to), at(self.from)).expect("no place is the origin")
+        Quaternion::quotient(at(self.to), at(self.from)).expect("neither position is the origin")
     }
 
     /// Sets the velocity that turns the body by one step's fraction of the quotient.
     fn go_on(&self, world: &mut World) {
         let (q, dt) = (self.quotient(world), world.def().dt());
-        let axis = q.axis().expect("the places do not lie in line with the origin");
+        let axis = q.axis().expect("the two positions are not collinear with the origin");
         let (share, place) = (1.0 / JOURNEY as f32, world.center_of_mass(self.walker));
         let linear = (q.power(share).apply(place) - place) / dt;
         let angular = axis * (q.angle() * share / dt);

@@ -78,7 +78,7 @@ pub(in crate::scenes) const HANGING_ROPE: Scene = Scene {
 const LINK: Setting =
     Setting::number("link", 0.0, (0.0, 10.0), "length of a link, m; 0: three chains with 1, 0.5 and 0.25 m");
 
-/// Bounds for the metrics of a chain.
+/// Expectations of a chain's metrics.
 struct Musts {
     gap: Expected,
     gap_per_link: Expected,
@@ -118,7 +118,7 @@ struct Chain {
 }
 
 impl Chain {
-    /// All chains of a plan, each of which begins with a joint to a static body.
+    /// Builds all chains of a plan. Each chain begins with a joint to a static body.
     fn build_all(world: &mut World, plan: &Blueprint) -> Vec<Self> {
         let built = plan.build_into(world);
         let is_first = |place: &usize| plan.bodies[plan.joints[*place].a].kind == BodyKind::Static;

@@ -74,7 +74,7 @@ fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: &[f32]) -> Instance {
         particles: (0..=springs.len()).map(particle).collect(),
         springs,
         attachments: vec![AttachmentDef { particle: 0, target: AttachmentTarget::World(Vec3::ZERO) }],
-        // The slowest swing of a long chain stretches its springs too slowly for their damping.
+        // The slowest mode of a long chain stretches its springs too slowly to be damped by them.
         linear_damping: 2.0,
         ..GroupDef::default()
     });
@@ -133,7 +133,7 @@ fn rope_on_box(setup: &Setup<'_>) -> Instance {
     let mut world = setup.world();
     world.add_body(&floor());
     let mut block = cuboid(Vec3::splat(HALF), Vec3::Y * HALF);
-    // A cardboard box of 5 kg, which the rope could push.
+    // The box has only 5 kg, so that the rope could push it.
     block.shapes[0].density = 40.0;
     let block = world.add_body(&block);
     let (length, middle) = (setup.number("length"), Vec3::new(0.0, HEIGHT, 0.02));

@@ -19,7 +19,7 @@ pub(in crate::scenes) const HEAVY_FOOT: Scene = Scene {
 };
 
 const FOOT_HALF: Vec3 = Vec3::new(0.05, 0.03, 0.11);
-/// Limit of the ankle either way, degrees: a leg that reaches its stop has too little energy to tip over its toes.
+/// Limit of the ankle in both directions, degrees: so small that a leg that reaches it cannot tip over its toes.
 const ANKLE: f32 = 2.0;
 
 /// A slightly tilted leg of 69 kg on a hinged foot.

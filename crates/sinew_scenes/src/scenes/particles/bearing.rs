@@ -1,4 +1,4 @@
-//! Springs that carry loads much heavier than themselves.
+//! Springs between light particles that carry much heavier loads.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};

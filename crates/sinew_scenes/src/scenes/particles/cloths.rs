@@ -1,4 +1,4 @@
-//! Cloth that hangs.
+//! Cloth that hangs by two corners.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -48,7 +48,7 @@ fn level(setup: &Setup<'_>) -> Cloth {
         radius: 0.01,
     }
     .build();
-    // Enough iterations that the threads reach their full stiffness.
+    // With so many iterations the springs reach their full stiffness.
     cloth.group.iterations = 12;
     cloth
 }

@@ -1,4 +1,4 @@
-//! Cloth in folds.
+//! Folded cloth under a box, whose layers must not pass through each other.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -97,7 +97,7 @@ fn folded(setup: &Setup<'_>) -> Instance {
 
 #[derive(Default)]
 struct Watch {
-    /// Number of threads that pierced the cloth in all checked steps.
+    /// Number of springs that pierced the cloth, summed over all checked steps.
     crossings: u32,
     /// Least distance of particles of different layers, metres.
     least: f32,
@@ -125,7 +125,7 @@ fn triangles() -> impl Iterator<Item = [usize; 3]> {
     cells.flat_map(move |a| [[a, a + 1, a + wide], [a + 1, a + wide + 1, a + wide]])
 }
 
-/// Number of pairs of a thread and a triangle that the thread pierces without being its edge.
+/// Number of pairs of a spring and a triangle that the spring pierces, except where it is an edge of the triangle.
 fn crossings(positions: &[Vec3]) -> u32 {
     let wide = COLUMNS as usize + 1;
     let along = (0..positions.len() - wide).map(|i| [i, i + wide]);

@@ -37,10 +37,11 @@ const TIED: Vec3 = Vec3::new(0.2, 0.0, 0.95);
 const DECK: f32 = 2.0;
 const LOW: f32 = 2.6;
 const HIGH: f32 = 3.6;
-/// Stiffness times length of a spring, N (springs shorter than from plank to plank are no stiffer), and mass of each knot of the ropes, kg.
+/// Stiffness times length of a spring, N (springs shorter than the distance of two planks are no stiffer), and mass of
+/// each knot of the ropes, kg.
 const STIFFNESS: f32 = 4e4;
 const KNOT: f32 = 0.5;
-/// Number of iterations of the ropes in a substep: with many planks longer iterations gain energy.
+/// Number of iterations of the ropes in a substep. With fewer iterations a bridge of many planks gains energy.
 const PARTS: u32 = 32;
 /// Damping of the springs, as a share of the critical one for a plank's corner.
 const DAMPED: f32 = 1.0;

@@ -46,7 +46,7 @@ fn standing(setup: &Setup<'_>, places: impl Iterator<Item = Vec3>) -> Instance {
     let mut world = setup.world();
     world.add_body(&floor());
     let boxes: Vec<_> = places.map(|at| (world.add_body(&cuboid(Vec3::splat(HALF), at)), at)).collect();
-    let &(last, place) = boxes.last().expect("no setting allows none");
+    let &(last, place) = boxes.last().expect("the setting allows only one box or more");
     world.set_transform(last, Transform::from_translation(place + Vec3::Y * DROP));
     let flight = Flight::new(&world, vec![last]);
     Instance::new(world, Standing { boxes, flight, asleep: None })
@@ -104,8 +104,8 @@ const RADIUS: f32 = 0.1;
 /// Height of the ball's centre at its lowest point, where it strikes, metres.
 const STRIKE_HEIGHT: f32 = 0.4;
 const ROD: f32 = 1.0;
-/// Distance behind its lowest point at which the ball touches the first domino, metres: its speed is largest before the
-/// strike.
+/// Distance behind its lowest point at which the ball touches the first domino, metres. The ball thus reaches its
+/// largest speed before the strike.
 const LATE: f32 = 0.02;
 
 fn dominoes(setup: &Setup<'_>) -> Instance {

@@ -321,8 +321,8 @@ struct Laden {
     asleep: Option<f32>,
 }
 
-/// Shift, sink and depth that are always allowed for a loaded structure, metres, because twice a value near zero is too
-/// strict. An unloaded one may shift by 5 mm in its own scene.
+/// Shift, sink and depth, metres, that a loaded structure may have in any case. A bound of twice the unloaded value
+/// would be too strict where that value is near zero. In its own scene an unloaded structure may shift by 5 mm.
 const ROOM: [f32; 3] = [0.005, 0.005, 0.001];
 
 impl Script for Laden {

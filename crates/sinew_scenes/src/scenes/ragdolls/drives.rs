@@ -61,7 +61,7 @@ fn powered(setup: &Setup<'_>) -> Instance {
 }
 
 fn body(def: &RagdollDef, role: &str) -> usize {
-    def.bodies.iter().position(|body| body.role == role).expect("the mannequin has the part")
+    def.bodies.iter().position(|body| body.role == role).expect("the mannequin has a body of this role")
 }
 
 fn mass(def: &RagdollDef) -> f32 {
@@ -192,7 +192,7 @@ impl Walk {
         bodies
     }
 
-    /// Target states of the bodies at the end of that many steps.
+    /// Returns the target states of the bodies after `steps` steps.
     fn states(&self, steps: u64, dt: f32) -> Vec<BodyState> {
         let time = steps as f32 * dt;
         let (before, now) = (self.bodies(time - dt), self.bodies(time));

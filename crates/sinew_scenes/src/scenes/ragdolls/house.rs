@@ -82,8 +82,8 @@ fn out_of_the_door(world: &World, def: &RagdollDef, place: Vec3) -> Vec3 {
 /// The level as triangles, or as boxes.
 fn bodies(level: &TriangleMesh, as_mesh: bool) -> Vec<BodyDef> {
     if as_mesh {
-        return vec![level.to_body().expect("a level that was read has triangles")];
+        return vec![level.to_body().expect("a loaded level has triangles")];
     }
     let cooked = cook(&level.positions, &level.triangles, &CookOptions::default(), &mut |_| {});
-    cooked.expect("a level that was read has triangles").boxes.iter().map(BodyDef::fixed_box).collect()
+    cooked.expect("a loaded level has triangles").boxes.iter().map(BodyDef::fixed_box).collect()
 }

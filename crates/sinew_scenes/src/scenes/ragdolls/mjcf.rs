@@ -93,7 +93,7 @@ fn drop(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Fallen { figures, flight })
 }
 
-/// Handling of the static body of a model.
+/// Whether the static body of the model is added to the world.
 #[derive(Clone, Copy, PartialEq)]
 enum Ground {
     Keep,

@@ -36,7 +36,7 @@ const BETWEEN_WAVES: f32 = 1.5;
 /// Longest time from the hit until the character is up, seconds. A body under others has six seconds to come to
 /// rest, one and a half for the roll, and three for the get-up.
 const UP_WITHIN: f64 = 10.6;
-/// States in the order of updates, with the names of their cost metrics.
+/// States in the order in which characters are updated, with the names under which their cost is reported.
 const STATES: [(State, &str); 4] = [
     (State::Animated, "animated"),
     (State::Limp, "limp"),

@@ -1,4 +1,4 @@
-//! The engine's loop: frames of any length, and a user-defined kind of object.
+//! The main loop with frames of any length, and a kind of object that the user defines.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -88,7 +88,7 @@ impl Other {
         Self { name, frames, world, time: Duration::ZERO, differed: 0 }
     }
 
-    /// Advances frame by frame. The last frame is as long as needed, because a remaining time would be part of the
+    /// Advances frame by frame. The last frame ends exactly at `until`, because a remaining time would change the
     /// state.
     fn advance(&mut self, until: Duration) {
         while self.time < until {
@@ -189,8 +189,8 @@ impl OnWire {
         Vec3::new(1.0 + cos, sin, 0.0) * CIRCLE
     }
 
-    /// Rolls to the point at which the line through `place` along the normal at the bead's old position crosses the wire,
-    /// by Newton's method (SHAKE; with the normal at the new position the bead would lose energy in every bend).
+    /// Rolls to the point at which the line through `place` along the normal at the bead's old position crosses the
+    /// wire, by Newton's method (SHAKE; with the normal at the new position the bead would lose energy in every bend).
     fn follow(&mut self, place: Vec3) {
         let came = self.tangent();
         for _ in 0..4 {
@@ -300,7 +300,8 @@ impl Script for Tautochrone {
     }
 
     fn metrics(&self, world: &World) -> Vec<Metric> {
-        // Huygens, Horologium Oscillatorium (1673): along the wire `s" = −g s / (4 r)`, so `T = 4π √(r/g)` from any height.
+        // Huygens, Horologium Oscillatorium (1673): along the wire `s" = −g s / (4 r)`, so `T = 4π √(r/g)` from any
+        // height.
         let period = 4.0 * PI * f64::from(CIRCLE / GRAVITY).sqrt();
         let of = |bead: &Bead| Metric::awaited(bead.name, bead.period(), Expected::near(period, 0.0005));
         let mut metrics: Vec<Metric> = self.beads.iter().map(of).collect();

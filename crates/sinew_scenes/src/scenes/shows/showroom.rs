@@ -90,7 +90,7 @@ fn exhibits() -> [Exhibit; 7] {
     let share = 0.5 + 0.5 * tapered.mass_properties(1.0).center.y / half_height;
     let reach = 0.4;
     let corners: Vec<Vec3> = Vec3::AXES.into_iter().flat_map(|axis| [axis * reach, axis * -reach]).collect();
-    let octahedron = Hull::new(&corners).expect("an octahedron is a solid");
+    let octahedron = Hull::new(&corners).expect("the octahedron's corners span a solid");
     [
         upright(Shape::Box { half_extents }, half_extents.y),
         upright(Shape::Sphere { radius }, radius),

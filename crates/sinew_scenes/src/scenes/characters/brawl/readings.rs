@@ -4,7 +4,8 @@ use super::watch::STATES;
 use crate::framework::metric::{Expected, Metric};
 use sinew::math::{ReadError, Reader, Vec3, Writer};
 
-/// Least displacement in each of three successive frames, back and forth, that counts as shaking, metres.
+/// Smallest displacement that counts as shaking if a joint moves by it back and forth in three successive frames,
+/// metres.
 const SHAKE: f32 = 0.005;
 
 /// Metrics of shaking joints, in the order of [`STATES`].
@@ -17,7 +18,7 @@ const SHAKES: [&str; STATES.len()] = [
     "getting_up_shakes",
 ];
 
-/// Ends of the roles of each part; all other bodies are the last part.
+/// Endings of the roles of each part. The last part contains all other bodies.
 const PARTS: [&[&str]; 5] = [&["Foot", "Toes"], &["hips"], &["Hand"], &["head", "neck"], &[""]];
 
 /// Metrics of bodies inside static bodies, in the order of [`STATES`] and [`PARTS`].
@@ -78,7 +79,7 @@ impl Readings {
     /// Counts a body with this role that is inside a static body.
     pub fn add_deep(&mut self, state: usize, role: &str) {
         let part = PARTS.iter().position(|ends| ends.iter().any(|end| role.ends_with(end)));
-        self.deep[state][part.expect("the last part takes all roles")] += 1;
+        self.deep[state][part.expect("the last part matches every role")] += 1;
     }
 
     pub fn metrics(&self) -> impl Iterator<Item = Metric> {
@@ -100,7 +101,8 @@ impl Readings {
     }
 }
 
-/// Returns true if a joint at `now` that was at `before` in the last three frames, the latest first, moves back and forth.
+/// Returns true if a joint at `now` that was at `before` in the last three frames, the latest first, moves back and
+/// forth.
 pub(super) fn shakes(before: [Vec3; 3], now: Vec3) -> bool {
     let [c, b, a] = before;
     let ways = [b - a, c - b, now - c];

@@ -28,7 +28,7 @@ const SEEN: f64 = 0.02;
 pub(super) struct Watched {
     /// Joint positions in the last three frames, the latest first.
     frames: [Vec<Vec3>; 3],
-    /// States after the last two updates, by index, the latest first; and if a hit came before them.
+    /// For the last two updates, the latest first: the state's index, and whether a hit preceded the update.
     states: [u8; 2],
     blows: [bool; 2],
     /// Steps since the last hit, steps since the fall, and number of steps in which the character lay with room to
@@ -128,7 +128,7 @@ const SIZES: [&str; 15] = [
 ];
 
 fn state_index(state: State) -> usize {
-    STATES.iter().position(|&other| other == state).expect("all states are listed")
+    STATES.iter().position(|&other| other == state).expect("`STATES` lists every state")
 }
 
 impl Watch {
@@ -149,11 +149,11 @@ impl Watch {
     }
 
     fn count(&mut self, name: &str, by: u32) {
-        self.counts[COUNTS.iter().position(|&other| other == name).expect("the scene is counted")] += by;
+        self.counts[COUNTS.iter().position(|&other| other == name).expect("`COUNTS` lists the name")] += by;
     }
 
     fn size(&mut self, name: &str, value: f32) {
-        let at = SIZES.iter().position(|&other| other == name).expect("it is measured");
+        let at = SIZES.iter().position(|&other| other == name).expect("`SIZES` lists the name");
         self.sizes[at] = max(self.sizes[at], value);
     }
 
@@ -287,11 +287,11 @@ impl Watch {
         Ok(())
     }
 
-    /// Metrics so far; the expectations are those of a crowd fit for a game.
+    /// Returns the metrics so far, with the expectations of a crowd in a game.
     pub fn metrics(&self) -> Vec<Metric> {
         let count = |name: &str| {
             f64::from(
-                self.counts[COUNTS.iter().position(|&other| other == name).expect("the scene is counted")],
+                self.counts[COUNTS.iter().position(|&other| other == name).expect("`COUNTS` lists the name")],
             )
         };
         let share = |part: f64, of: f64| if of > 0.0 { part / of } else { 0.0 };
