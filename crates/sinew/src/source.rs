@@ -88,7 +88,11 @@ impl CharacterSource {
     pub fn keep(&mut self, character: usize) -> Result<(), NoSkin> {
         let rig = &mut self.document.rig;
         let all = characters(rig);
-        assert!(character < all.len(), "there is no character {character} but {}", all.len());
+        assert!(
+            character < all.len(),
+            "character {character} is out of range: the file has {} characters",
+            all.len()
+        );
         let is_others =
             |mesh: usize| all.iter().any(|meshes| meshes.contains(&mesh)) && !all[character].contains(&mesh);
         let mut index = 0;
@@ -108,7 +112,7 @@ impl CharacterSource {
         let count = self.characters().len();
         let Some(largest) = self.largest().filter(|_| count > 1) else { return Ok(None) };
         self.keep(largest)?;
-        Ok(Some(format!("there are {count} characters in the file; the one with the most vertices is taken")))
+        Ok(Some(format!("the file contains {count} characters; the one with the most vertices is used")))
     }
 
     /// Applies settings to roles and unit, makes cloth of the meshes listed as garments, and gives legs without feet an ankle.

@@ -4,7 +4,8 @@ use crate::pipeline::shade::limited;
 use sinew::math::lanes::{Lanes, WIDTH};
 use sinew::math::{clamp, trig};
 
-/// Entries of the encoding table: at the steep dark end one entry is 0.8 of a byte's step, so no byte is left out.
+/// Number of entries of the encoding table. In the dark range, where the curve is steepest, one entry is 0.8 of the
+/// step between two bytes, so every byte occurs.
 const ENCODE_STEPS: usize = 4096;
 
 /// Tables of the two transfer functions: a power per pixel would cost more than its shading.
@@ -40,10 +41,12 @@ impl ColorTables {
         self.srgb[(clamp(linear, 0.0, 1.0) * (ENCODE_STEPS - 1) as f32 + 0.5) as usize]
     }
 
-    /// Writes pixels side by side, given by linear channels, as red, green, blue and alpha, with the same bytes as [`Self::to_srgb3`].
+    /// Writes neighbouring pixels as red, green, blue and alpha. `channels` are linear; the bytes are those of
+    /// [`Self::to_srgb3`].
     #[inline(always)]
     pub(crate) fn write_srgb<L: Lanes>(&self, linear: [L; 3], pixels: &mut [[u8; 4]; WIDTH]) {
-        /// From this value on all `f32` numbers are whole, and their low bits are the difference from this value.
+        /// Value from which on all `f32` numbers are whole. The low bits of such a number are its difference from this
+        /// value.
         const WHOLE: f32 = 8_388_608.0;
         let mut steps = [[0.0; WIDTH]; 3];
         for (steps, linear) in steps.iter_mut().zip(linear) {

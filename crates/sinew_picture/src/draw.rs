@@ -4,9 +4,9 @@ use crate::scene::{Line, LineDepth, Model, Pattern, RenderMaterial, ShadowCastin
 use sinew::math::{Rotation, Transform, Vec3, normalize_or, trig};
 use sinew::physics::{Hull, Shape};
 
-/// Segments around a ball or capsule: with 15° each they look round at the sizes in pictures.
+/// Number of segments around a ball or capsule. With 15° each the shape looks round at the sizes in pictures.
 const AROUND: usize = 24;
-/// Segments from the equator to a pole.
+/// Number of segments from the equator to a pole.
 const TO_POLE: usize = 6;
 
 /// Returns the surface of a shape. Boxes, hulls, meshes and height fields have flat faces, the others smooth normals. An infinite

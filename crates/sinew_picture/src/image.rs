@@ -3,7 +3,7 @@
 pub struct Image {
     /// Width in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: u32,
     /// `width × height × 4` bytes, RGBA. Images of a [`Renderer`](crate::Renderer) are opaque.
     pub rgba: Vec<u8>,

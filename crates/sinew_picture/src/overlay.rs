@@ -7,14 +7,14 @@ use crate::pipeline::raster::{Samples, ScreenVertex};
 use crate::scene::{Caption, Line, LineDepth};
 use sinew::math::{clamp, max};
 
-/// Sheet of letters from the space on, sixteen a row; `#` is ink.
+/// Bitmap of the letters, from the space on, sixteen in a row; `#` marks a set dot.
 const GLYPHS: &[u8] = include_bytes!("glyphs.txt");
 const GLYPH_ROWS: usize = 8;
 const GLYPH_COLUMNS: usize = 5;
-/// Columns of a letter and the gap after it.
+/// Number of columns of a letter, including the gap after it.
 const ADVANCE: usize = GLYPH_COLUMNS + 1;
 const LETTERS_PER_ROW: usize = 16;
-/// Bytes of a line of the sheet: it ends with a line feed instead of the last letter's gap.
+/// Number of bytes in a line of the bitmap, which ends with a line feed instead of the last letter's gap.
 const SHEET_PITCH: usize = LETTERS_PER_ROW * ADVANCE;
 
 /// Factor by which a line is drawn nearer, so that the surface under it does not hide it.
@@ -34,7 +34,7 @@ pub(crate) fn draw_lines(
     }
 }
 
-/// Returns the ends of the part of a line that is before the camera and near the picture.
+/// Returns the ends of the part of a line that is in front of the camera and inside or near the picture.
 fn on_picture(line: &Line, view: &View, samples: &Samples) -> Option<[ScreenVertex; 2]> {
     let [a, b] = [view.clip_from_world(line.from), view.clip_from_world(line.to)];
     let (mut first, mut last) = (0.0f32, 1.0f32);
@@ -60,8 +60,8 @@ fn on_picture(line: &Line, view: &View, samples: &Samples) -> Option<[ScreenVert
     })
 }
 
-/// Draws two pixels a step along the longer direction, weighted by their distance from the line (Wu, "An
-/// Efficient Antialiasing Technique", SIGGRAPH 1991); the line is a little wider for readability.
+/// Draws an antialiased line: two pixels at each step along its longer direction, weighted by their distance from the
+/// line (Wu, "An Efficient Antialiasing Technique", SIGGRAPH 1991); the line is a little wider for readability.
 fn draw_line(
     image: &mut Image,
     [a, b]: [ScreenVertex; 2],

@@ -14,9 +14,9 @@ use sinew::math::lanes::{Lanes, WIDTH};
 /// Size and quality of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderSettings {
-    /// Pixels across, 1..=8192. Default 640.
+    /// Width in pixels, 1..=8192. Default 640.
     pub width: u32,
-    /// Pixels down, 1..=8192. Default 360.
+    /// Height in pixels, 1..=8192. Default 360.
     pub height: u32,
     /// Smoothing of edges. Default four samples.
     pub antialiasing: Antialiasing,
@@ -73,7 +73,7 @@ pub struct Renderer {
     footprints: Footprints,
 }
 
-/// Footprints to draw, split by their visibility.
+/// Footprints to draw, solid and translucent ones separately.
 #[derive(Clone, Debug, Default)]
 struct Footprints {
     solid: Vec<Footprint>,
@@ -87,9 +87,15 @@ impl Renderer {
     /// If a size is outside the range that [`RenderSettings`] gives.
     pub fn new(settings: RenderSettings) -> Self {
         let RenderSettings { width, height, antialiasing, shadow_texels, threads } = settings;
-        assert!((1..=8192).contains(&width) && (1..=8192).contains(&height), "picture of {width} × {height}");
-        assert!((16..=8192).contains(&shadow_texels), "shadow map of {shadow_texels} texels");
-        assert!(threads >= 1, "a picture needs a thread");
+        assert!(
+            (1..=8192).contains(&width) && (1..=8192).contains(&height),
+            "a picture must have 1 to 8192 pixels a side, not {width} × {height}"
+        );
+        assert!(
+            (16..=8192).contains(&shadow_texels),
+            "a shadow map must have 16 to 8192 texels a side, not {shadow_texels}"
+        );
+        assert!(threads >= 1, "a renderer needs at least one thread");
         let samples = Samples::new(width as usize, height as usize, antialiasing.offsets());
         Self {
             settings,
@@ -234,7 +240,7 @@ struct ShadeRow<'a> {
 impl Kernel for ShadeRow<'_> {
     type Output = ();
 
-    // Spans are plain loops, for which the compiler uses wider registers.
+    // Compute spans in plain loops, for which the compiler uses wide registers.
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { renderer, shader, y, row } = self;
@@ -256,7 +262,8 @@ impl Kernel for ShadeRow<'_> {
     }
 }
 
-/// Calls `work` for every item. Threads take the items in turn: neighbours cost about the same, so the loads are even.
+/// Calls `work` for every item. The items are dealt to the threads in turn, because neighbouring items cost about the
+/// same, so all threads get about the same load.
 fn share<T: Send>(threads: usize, items: Vec<T>, work: impl Fn(T) + Sync) {
     if threads == 1 {
         items.into_iter().for_each(work);
@@ -335,7 +342,7 @@ fn mean(samples: &Samples, x: usize, y: usize, mut shade: impl FnMut(u32, [f32; 
             place = [place[0] + sample[0], place[1] + sample[1]];
             count += 1.0;
         }
-        // Colours brighter than white would outweigh their neighbours and bring the jagged edge back.
+        // Limit each colour to white, because a brighter one would outweigh the others and make the edge jagged again.
         let color = shade(id, place.map(|p| p / count)).map(|channel| sinew::math::clamp(channel, 0.0, 1.0));
         for i in 0..3 {
             sum[i] += color[i] * count;

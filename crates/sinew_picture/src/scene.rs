@@ -7,9 +7,9 @@ use std::sync::Arc;
 pub struct Scene {
     /// Surfaces.
     pub models: Vec<Model>,
-    /// Lines over the surfaces: bones, joints, contacts.
+    /// Lines drawn over the surfaces, for instance bones, joints and contacts.
     pub lines: Vec<Line>,
-    /// Text over all else.
+    /// Text drawn over everything else.
     pub captions: Vec<Caption>,
     /// The only light with shadows.
     pub sun: Sun,

@@ -1,10 +1,11 @@
 use crate::color::ColorTables;
 use sinew::math::Vec2;
 
-/// An image on a surface, with its smaller copies, so that it does not shimmer at a distance.
+/// An image on a surface, with a chain of smaller copies (mip levels), so that it does not shimmer at a distance.
 #[derive(Clone, Debug)]
 pub struct Texture {
-    /// Levels: full size first, each next half as large in both directions, the last 1 × 1.
+    /// Mip levels: the first has the full size, each of the others half the size of the one before in both directions,
+    /// the last is 1 × 1.
     levels: Vec<Level>,
 }
 
@@ -16,7 +17,7 @@ struct Level {
     rgba: Vec<u8>,
 }
 
-/// Error: the number of bytes does not fit the size.
+/// Error returned when the number of bytes does not fit the size of a texture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a texture of {width} × {height} needs {needed} bytes and got {got}")]
 pub struct TextureError {
@@ -49,8 +50,8 @@ impl Texture {
         Ok(Self { levels })
     }
 
-    /// Returns width, height and bytes of each level, full size first, each next half as large: 8-bit sRGB with alpha, rows from
-    /// the top.
+    /// Returns width, height and bytes of each mip level, from the full size down: 8-bit sRGB with alpha, rows from the
+    /// top.
     pub fn levels(&self) -> impl Iterator<Item = (u32, u32, &[u8])> {
         self.levels.iter().map(|level| (level.width as u32, level.height as u32, level.rgba.as_slice()))
     }
@@ -60,7 +61,8 @@ impl Texture {
         (self.levels[0].width * self.levels[0].height) as f32
     }
 
-    /// Returns the level whose texels are nearest in size to a pixel that covers `texels_per_pixel` of the full image.
+    /// Returns the mip level whose texels are nearest in size to a pixel, for a pixel that covers an area of
+    /// `texels_per_pixel` texels of the full image.
     pub(crate) fn level_for(&self, texels_per_pixel: f32) -> usize {
         let mut level = 0;
         let mut area = texels_per_pixel;
@@ -92,7 +94,7 @@ impl Level {
         [self.rgba[start], self.rgba[start + 1], self.rgba[start + 2], self.rgba[start + 3]]
     }
 
-    /// Returns the level of half the size: averages 2 × 2 texels as light, not as bytes. `None` at 1 × 1.
+    /// Returns the mip level of half the size, which averages 2 × 2 texels in linear light; `None` for the level 1 × 1.
     fn halved(&self, tables: &ColorTables) -> Option<Self> {
         if self.width == 1 && self.height == 1 {
             return None;

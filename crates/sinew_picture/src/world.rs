@@ -1,4 +1,4 @@
-//! Draws a physics world as models and lines: moving bodies in colours, fixed ones in grey.
+//! Draws a physics world as models and lines: movable bodies in colours, static ones in grey.
 
 use crate::draw;
 use crate::scene::{Line, LineDepth, Model, RenderMaterial, Scene};
@@ -10,7 +10,8 @@ use sinew::physics::{
 };
 use std::collections::{HashMap, HashSet, VecDeque};
 
-/// Part of a world shown in a picture: thin and small things are drawn thick enough to be visible.
+/// Part of a world shown in a picture. Its size determines how thick small and thin objects are drawn so that they are
+/// visible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<'a> {
     /// Centre of the frame, world space, metres.
@@ -28,11 +29,11 @@ pub struct Frame<'a> {
 pub enum Kinematic {
     /// The bodies are drawn like others.
     Solid,
-    /// The edges of the bodies are drawn, so that they do not hide the character that leads them.
+    /// Only the edges of the bodies are drawn, so that they do not hide the character whose clips move them.
     Wire,
 }
 
-/// Linear colours, used for one body after the other.
+/// Linear colours of bodies, assigned in the order of the bodies.
 const COLORS: [[f32; 3]; 8] = [
     [0.62, 0.10, 0.06],
     [0.06, 0.22, 0.52],
@@ -51,15 +52,15 @@ const MOWN: f32 = 1.2;
 const PARTICLE: [f32; 3] = [0.70, 0.34, 0.05];
 const SPRING: [f32; 3] = [0.25, 0.22, 0.18];
 const JOINT: [f32; 3] = [0.10, 0.11, 0.12];
-/// Colour of lines that the user's objects draw, linear.
+/// Linear colour of the lines that user-defined objects draw.
 const OBJECT: [f32; 3] = [0.70, 0.05, 0.30];
 /// Share by which the colour of a sleeping body is mixed with [`PALE`].
 const SLEEP: f32 = 0.3;
 const PALE: [f32; 3] = [0.75, 0.77, 0.80];
 
-/// Smallest visible radius of a ball, as a share of the frame's.
+/// Least radius with which a ball is drawn, as a share of the frame's radius.
 const SMALLEST: f32 = 0.012;
-/// Radius of a spring's rod, as a share of the frame's.
+/// Radius of the rod that shows a spring, as a share of the frame's radius.
 const ROD: f32 = 0.004;
 /// Largest number of particles and springs that are drawn as balls and rods; more are drawn as lines.
 const MOST_SOLID: usize = 1500;
@@ -86,7 +87,7 @@ pub fn subject(world: &World) -> Option<Aabb> {
     })
 }
 
-/// Returns true if a picture shows the whole shape: floors and levels extend beyond it.
+/// Returns true if a picture should contain the whole shape; false for floors and levels, which extend beyond it.
 fn is_solid(shape: &Shape) -> bool {
     !matches!(shape, Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_))
 }
@@ -123,7 +124,7 @@ fn links(world: &World, id: JointId) -> [[Vec3; 2]; 3] {
 pub trait Canvas {
     /// Adds the surface of a bounded shape, in one colour.
     fn solid(&mut self, shape: &Shape, world_from_shape: Transform, color: [f32; 3]);
-    /// Adds a ball of `radius` metres with eight fields, every second one darker, like [`draw::ball`].
+    /// Adds a ball of `radius` metres, whose surface has eight fields of two alternating shades, like [`draw::ball`].
     fn ball(&mut self, radius: f32, world_from_ball: Transform, color: [f32; 3]);
     /// Adds a round rod of `radius` between two points, metres, world space.
     fn rod(&mut self, from: Vec3, to: Vec3, radius: f32, color: [f32; 3]);
@@ -160,8 +161,8 @@ pub fn paint(world: &World, frame: &Frame<'_>, canvas: &mut dyn Canvas) {
     paint_all_but(world, &[], &[], frame, canvas);
 }
 
-/// Paints like [`paint`], without the bodies `shown` by other means and their joints, and without particles that are `worn`:
-/// those of a character drawn by its skin.
+/// Paints like [`paint`], without the bodies `shown` by other means and their joints, and without particles that are
+/// `worn`: these are parts of a character that is drawn by its skin.
 pub fn paint_all_but(
     world: &World,
     shown: &[BodyId],
@@ -220,7 +221,7 @@ fn thin(segments: &[[Vec3; 2]], color: [f32; 3], frame: &Frame<'_>, canvas: &mut
     }
 }
 
-/// Draws a body. `color` is the own colour of the body, or as an error its number.
+/// Draws a body. `color` is `Ok` with the body's own colour, or `Err` with its number in the order of ids.
 fn paint_body(
     world: &World,
     id: BodyId,
@@ -369,7 +370,7 @@ impl Trails {
     }
 }
 
-/// Lines of [`World::draw`], or of other drawings, that no surface replaces.
+/// Collects the lines of [`World::draw`], or of other drawings, that are not replaced by surfaces.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     /// Lines in the order in which they were drawn.
@@ -384,7 +385,7 @@ impl Lines {
     }
 }
 
-/// Kinds that give no lines: surfaces, and contacts, which are not drawn.
+/// Kinds of drawings from which no lines are collected: surfaces, and contacts, which are not drawn.
 const SURFACES: [DrawKind; 7] = [
     DrawKind::Static,
     DrawKind::Kinematic,

@@ -44,7 +44,7 @@ pub fn body_velocity(
     dt: f32,
     bound: SpeedBound,
 ) -> Velocity {
-    assert!(dt > 0.0, "two poses are a time apart");
+    assert!(dt > 0.0, "the time between two poses must be positive, not {dt} s");
     Velocity {
         linear: shortened((after.point(center) - before.point(center)) / dt, bound.linear),
         angular: shortened(before.rotation.angular_velocity_to(after.rotation, dt), bound.angular),
@@ -65,7 +65,11 @@ pub fn body_velocities(
     bound: SpeedBound,
     velocities: &mut Vec<Velocity>,
 ) {
-    assert_eq!([before.len(), after.len()], [def.bodies.len(); 2], "each body has two poses");
+    assert_eq!(
+        [before.len(), after.len()],
+        [def.bodies.len(); 2],
+        "each body needs one pose before and one after"
+    );
     velocities.clear();
     let poses = before.iter().zip(after).zip(&def.bodies);
     velocities.extend(

@@ -131,7 +131,8 @@ impl Ragdoll {
         Self::spawn_kinematic_without(world, def, states, body_settings, rule, &[])
     }
 
-    /// Like [`spawn_kinematic`](Self::spawn_kinematic), without some bodies; `gone` has placeholder ids for these.
+    /// Like [`spawn_kinematic`](Self::spawn_kinematic), but without the bodies in `gone`, which contains their indices
+    /// and placeholder ids.
     pub(crate) fn spawn_kinematic_without(
         world: &mut World,
         def: &RagdollDef,
@@ -181,7 +182,7 @@ impl Ragdoll {
         ragdoll
     }
 
-    /// Like [`wake`](Self::wake), for all bodies but some, without rule or owner.
+    /// Like [`wake`](Self::wake), but only for the bodies that are not detached; sets neither contact rule nor owner.
     pub(crate) fn wake_without(
         world: &mut World,
         def: &RagdollDef,
@@ -204,7 +205,8 @@ impl Ragdoll {
         Self::jointed(world, def, bodies.to_vec(), states, lost.to_vec())
     }
 
-    /// Adds all bodies except some to the world, with their joints; `gone` has placeholder ids for the others.
+    /// Adds all bodies except those in `gone` to the world, with their joints; `gone` contains the indices and
+    /// placeholder ids of the others.
     pub(crate) fn spawn_without(
         world: &mut World,
         def: &RagdollDef,
@@ -410,7 +412,7 @@ pub fn fitted(
             JointKind::Universal { limit: limit.map(|l| holding(l, swing)) },
         ),
         JointKind::Fixed => (parent * seen, child, JointKind::Fixed),
-        kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
+        kind => unreachable!("a ragdoll has only joints that rotate or are fixed, not {kind:?}"),
     };
     let frame = |translation: Vec3, rotation: Rotation| Transform::new(translation, rotation.normalize());
     RagdollJointDef {
@@ -434,7 +436,8 @@ fn holding(limit: SwingTwistLimit, seen: Rotation) -> SwingTwistLimit {
         swing_z: stretched(limit.swing_z, swing.z),
         twist: stretched(limit.twist, twist),
     };
-    // Each axis alone is wide enough now; the ellipse between the axes may not be.
+    // The limit now includes the rotation about each axis alone, but the ellipse between the axes may still exclude the
+    // rotation.
     let angle = swing.length();
     let room = if angle > 1e-6 { wide.cone_angle(swing.y / angle, swing.z / angle) } else { angle };
     let factor = if room < angle { 1.001 * angle / room } else { 1.0 };

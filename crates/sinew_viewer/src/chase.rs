@@ -2,7 +2,7 @@
 
 use sinew::math::{Vec3, min, trig};
 
-/// Time in which the lag shrinks to 1/e, seconds: so long that swinging limbs do not shake the camera.
+/// Time in which the lag shrinks to 1/e, seconds, long enough that swinging limbs do not shake the camera.
 const LAG: f32 = 0.3;
 /// Largest distance of the subject from the centre, as a share of the camera's distance: a fall down stairs stays in
 /// the picture, and after a jump the camera arrives without a lag.
@@ -18,7 +18,8 @@ impl Chase {
         Self(subject)
     }
 
-    /// Moves the point for a time, infinite without lag; returns its displacement. `distance` is that of the camera from its target.
+    /// Moves the point toward the subject for a time in seconds, or at once if the time is infinite; returns its
+    /// displacement. `distance` is that of the camera from its target.
     pub fn go(&mut self, subject: Vec3, seconds: f32, distance: f32) -> Vec3 {
         let lag = subject - self.0;
         let length = lag.length();

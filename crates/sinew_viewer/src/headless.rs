@@ -38,7 +38,7 @@ impl Headless {
         &self.app
     }
 
-    /// Returns the viewer, for operations without an event.
+    /// Returns the viewer, mutable, for operations that no event triggers.
     pub fn app_mut(&mut self) -> &mut App {
         &mut self.app
     }
@@ -94,7 +94,7 @@ impl Headless {
     /// Runs one frame with the events since the last one, and returns its picture.
     ///
     /// # Errors
-    /// If the picture does not come back from the card.
+    /// If the picture cannot be read back from the GPU.
     pub fn frame(&mut self) -> Result<Image, GpuError> {
         let [width, height] = self.size.map(|side| side as f32);
         self.frames += 1;
@@ -104,7 +104,7 @@ impl Headless {
         self.events.insert(0, Event::ModifiersChanged(modifiers));
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, Vec2::new(width, height))),
-            // Time advances by frames, so that a test is repeatable.
+            // The time of egui advances by a fixed amount per frame, so that a test is repeatable.
             time: Some(f64::from(self.frames) / 60.0),
             events: std::mem::take(&mut self.events),
             focused: true,

@@ -20,8 +20,8 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// Returns the file of the preferences: `sinew/viewer.json` in the system's folder for configuration; `None`
-    /// without one.
+    /// Returns the file of the preferences: `sinew/viewer.json` in the system's folder for configuration; `None` if
+    /// there is no such folder.
     pub fn path() -> Option<PathBuf> {
         let folder = |name: &str| std::env::var_os(name).filter(|path| !path.is_empty()).map(PathBuf::from);
         let config = folder("XDG_CONFIG_HOME")

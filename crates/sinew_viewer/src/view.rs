@@ -15,7 +15,7 @@ use sinew_scenes::scenes::Instance;
 const NEAREST: f32 = 0.1;
 /// Largest distance between the camera and its target, metres.
 const FARTHEST: f32 = 20_000.0;
-/// Steepest look up or down, radians: straight down has no horizon.
+/// Steepest angle of the view up or down, radians. A camera that looks straight down has no defined heading.
 const STEEPEST: f32 = 1.54;
 /// Field of view, radians (45°): wider than in pictures, for interactive use.
 const FOV: f32 = core::f32::consts::FRAC_PI_4;
@@ -40,7 +40,7 @@ pub fn bounds(instance: &Instance) -> Aabb {
     if is_sound { all } else { Aabb::around(Vec3::ZERO, Vec3::ONE) }
 }
 
-/// Returns the lines of the curves that a scene compares.
+/// Returns the lines that draw the curves that a scene compares.
 fn curves(instance: &Instance) -> Vec<Line> {
     let curves = instance.curves();
     draw::curves(curves.iter().map(|curve| &curve.pieces[..]))
@@ -75,7 +75,7 @@ impl Orbit {
         let bounds = bounds.expand(max(0.1 * (bounds.max - bounds.min).length(), 0.05));
         let camera = Camera::framing_box(&bounds, direction, aspect);
         let way = normalize_or(direction, Vec3::Z);
-        // The wider view needs less distance.
+        // The field of view is wider than in pictures, so the distance may be smaller.
         let nearer = trig::tan(0.5 * camera.fov_y) / trig::tan(0.5 * FOV);
         let distance = (camera.position - camera.target).length() * nearer * 1.1;
         let pitch = trig::asin(clamp(way.y, -1.0, 1.0));
@@ -105,7 +105,8 @@ impl Orbit {
         self.pitch = clamp(self.pitch + pitch, -STEEPEST, STEEPEST);
     }
 
-    /// Moves camera and target: to the right, up and forward relative to the camera, in units of the distance.
+    /// Moves camera and target to the right, up and forward relative to the camera, each as a multiple of their
+    /// distance.
     pub fn shift(&mut self, by: Vec3) {
         let axes = self.camera().axes(1.0);
         self.target += (axes.right * by.x + axes.up * by.y + axes.forward * by.z) * self.distance;
@@ -144,7 +145,7 @@ pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Sta
     let around = bounds(instance);
     let distance = (camera.position - camera.target).length();
     let size = 0.5 * (around.max - around.min).length();
-    // The size is limited by the near objects and by the content.
+    // Limit the size by the objects near the camera and by the content.
     let radius = clamp(distance * 0.5, 0.05, max(size, 1.0));
     let mut stage = Stage {
         scene: Scene {

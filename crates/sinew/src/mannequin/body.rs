@@ -206,7 +206,8 @@ fn knee() -> (Loft, Chain) {
     (loft, Chain::rigid(Bone::LeftLowerLeg))
 }
 
-/// Builds the shoe from sections along it: z, half-width, height of the top of the sole's curve, height above that.
+/// Builds the shoe from sections along it. Each has z, half-width, height of the top of the sole's curve, and height
+/// above that.
 fn shoe() -> (Loft, Chain) {
     const TABLE: [[f32; 4]; 9] = [
         [-0.066, 0.027, 0.030, 0.036],

@@ -56,7 +56,7 @@ fn carried(mut clip: Clip, path: Path, gait: &Gait) -> Cycle {
 /// Time at which the fist of [`punch`] arrives, clip seconds.
 pub const PUNCH_ARRIVES: f32 = 0.4;
 
-/// A straight right from a boxer's guard, and back to the guard: 1 s.
+/// A straight punch with the right hand from a boxer's guard and back to the guard, in 1 s.
 pub fn punch() -> Clip {
     let postures = [
         (0.0, guard()),
@@ -74,7 +74,7 @@ fn fist(x: f32, y: f32, z: f32) -> Hand {
     Hand { wrist: Vec3::new(x, y, z), flat: 0.0, fingers_out: 0.0, elbow_out: 12.0 }
 }
 
-/// Guard: left foot in front, both fists in front of the chin.
+/// Posture of the guard: left foot in front, both fists in front of the chin.
 fn guard() -> Posture {
     Posture {
         pelvis: Vec3::new(0.0, 0.865 + HIPS_ABOVE_HIP, 0.0),

@@ -24,13 +24,14 @@ fn clip(name: &str, keys: &[Key], steps: &[Step]) -> Clip {
     })
 }
 
-/// A step of a foot to another position: the foot goes up, over and down without sliding.
+/// A step of a foot to another position: the foot moves up, across and down, so that it does not slide.
 struct Step {
     side: Side,
     /// Seconds.
     from: f32,
     to: f32,
-    /// Height by which the foot is lifted, metres. Too low, the foot drags over the floor on other bodies.
+    /// Height by which the foot is lifted, metres. If it is too low, the foot drags over the floor when the clip plays
+    /// on other bodies.
     height: f32,
 }
 

@@ -59,7 +59,8 @@ pub(super) fn between(keys: &[Key], time: f32) -> Posture {
     result
 }
 
-/// Evaluates a smooth curve through points that never overshoots them (Fritsch and Butland 1984); flat at both ends.
+/// Evaluates a smooth curve through points that does not overshoot them (Fritsch and Butland 1984) and is flat at both
+/// ends.
 pub(super) fn monotone(times: &[f32], values: &[f32], time: f32) -> f32 {
     let last = times.len() - 1;
     if time >= times[last] {

@@ -4,7 +4,7 @@ use super::skeleton::Bone;
 use crate::anim::{Primitive, smoothstep};
 use crate::math::{Vec3, normalize_or, trig};
 
-/// A rounded cross-section: an ellipse whose two halves across `u` may differ in depth.
+/// A rounded cross-section: an ellipse whose halves on the two sides of `u` may differ in depth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Section {
     pub(super) center: Vec3,
@@ -205,7 +205,7 @@ fn flipped(triangles: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
     triangles.into_iter().map(|[a, b, c]| [a, c, b]).collect()
 }
 
-/// True if the enclosed volume is positive, so that the triangles are counter-clockwise seen from outside.
+/// Returns true if the enclosed volume is positive, so that the triangles are counter-clockwise seen from outside.
 fn encloses_positive(positions: &[Vec3], triangles: &[[usize; 3]]) -> bool {
     let volume: f32 =
         triangles.iter().map(|&[a, b, c]| positions[a].cross(positions[b]).dot(positions[c])).sum();

@@ -66,7 +66,7 @@ pub fn character() -> crate::ragdoll::CharacterDef {
     use crate::ragdoll::{BuildOptions, CharacterDef, Locomotion, MotionSet, build};
     let Mannequin { rig, clips, motions } = mannequin();
     let analysis = crate::anim::analyze(&rig).expect("the mannequin has a skin");
-    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("the mannequin has bones");
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
     // The walk starts at the left heel strike, and has two equal steps.
     let half = 0.5 * clips[motions.walk].duration;
@@ -80,6 +80,6 @@ pub fn character() -> crate::ragdoll::CharacterDef {
         locomotion: Locomotion::Forward { speed: motions.walk_speed },
         ..MotionSet::default()
     };
-    def.set_motions(motions).expect("clips made by code can be played");
+    def.set_motions(motions).expect("the mannequin's clips can be played");
     def
 }

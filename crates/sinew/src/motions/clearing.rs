@@ -11,9 +11,9 @@ use crate::anim::{JointIdx, LocalTransform, RigAnalysis, Role, Side, local_to_mo
 use crate::math::{Affine, Transform, Vec3, clamp, max, min};
 use crate::ragdoll::CharacterDef;
 
-/// Duration of raising and lowering the body, seconds of a human's motion.
+/// Duration of raising and lowering the body, seconds at a human's pace.
 const BLEND: f32 = 0.07;
-/// Duration of lowering a foot to its standing position, seconds of a human's motion.
+/// Duration of lowering a foot to its standing position, seconds at a human's pace.
 const TREAD: f32 = 0.1;
 /// Largest distance by which a standing foot is lowered, in leg lengths.
 const REACH: f32 = 0.3;
@@ -25,7 +25,7 @@ const OUTSIDE: f32 = 0.035;
 /// Largest height by which the body is raised, in heights of the character; deeper penetration remains.
 const MOST: f32 = 0.3;
 
-/// Body whose shapes measure how deep it is in the floor.
+/// The bodies of a character, whose shapes determine how deep the character is in the floor.
 pub(super) struct Clearing<'a> {
     def: &'a CharacterDef,
     root: Affine,
@@ -34,7 +34,7 @@ pub(super) struct Clearing<'a> {
     floor: f32,
     /// Depth of each body in the floor in the bind pose, metres: shapes differ slightly from the skin.
     stands: Vec<f32>,
-    /// Bodies that the pelvis is raised for: the trunk, the head, thighs and shanks.
+    /// Bodies for which the pelvis is raised when they are in the floor: the trunk, the head, thighs and shanks.
     trunk: Vec<usize>,
     /// Bodies of the feet, and of the legs above them, left and right.
     feet: [Vec<usize>; 2],
@@ -98,8 +98,8 @@ impl<'a> Clearing<'a> {
         })
     }
 
-    /// Moves props along, raises the body where its trunk, head or legs are in the floor, puts the feet on the floor,
-    /// and raises the hands.
+    /// Corrects a motion: moves props with the joints that carry them, raises the body where its trunk, head or legs
+    /// are in the floor, puts the feet on the floor, and raises the hands.
     pub fn clear(&self, fitted: &mut Retargeted) {
         let (def, most) = (self.def, MOST * self.def.ragdoll.height);
         let mut model = Vec::new();
@@ -117,7 +117,7 @@ impl<'a> Clearing<'a> {
         for (frame, ankles) in ankles.iter().enumerate() {
             let time = fitted.take.time(frame);
             let pose = fitted.take.pose_mut(frame);
-            // Legs without knees cannot tread; the raised body carries them.
+            // Legs without knees cannot reach down to the floor, so they move with the raised body.
             let legs = if self.legs.are_stiff(&def.rig) { 0 } else { 2 };
             for (k, foot) in self.legs.feet.iter().enumerate().take(legs) {
                 let stands = standing(&fitted.contacts, foot.side, time, TREAD * fitted.pace);

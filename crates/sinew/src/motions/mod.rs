@@ -36,7 +36,7 @@ pub struct BuiltinMotions {
 /// Reason why a character was not given the built-in motions.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BuiltinError {
-    /// The built-in motions are a human's, and the character is not human.
+    /// The built-in motions are those of a human, and the character is not human.
     #[error("the built-in motions are a human's: {0}")]
     Retarget(#[from] RetargetError),
     /// A clip cannot be played.
@@ -75,7 +75,7 @@ pub fn builtin_motions(def: &CharacterDef, analysis: &RigAnalysis) -> Result<Bui
     carried_over(def, analysis, None)
 }
 
-/// As [`builtin_motions`], with props moved along where a clip of the character `holds` them.
+/// As [`builtin_motions`], but moves props with the joints that carry them in the clip `holds` of the character.
 fn carried_over(
     def: &CharacterDef,
     analysis: &RigAnalysis,

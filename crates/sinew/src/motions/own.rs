@@ -9,7 +9,7 @@ use crate::ragdoll::{CharacterDef, Locomotion, MotionSet};
 const WALK: &str = "walk";
 const IDLE: &str = "idle";
 const FASTER: [&str; 3] = ["jog", "run", "sprint"];
-/// Words in the names of clips that do not move forward, or that contain further motions.
+/// Words in the names of clips that do not move forward, or that contain other motions as well.
 const NOT_AHEAD: [&str; 11] =
     ["back", "left", "right", "strafe", "turn", "stop", "start", "jump", "shoot", "attack", "aim"];
 const GET_UP: [&str; 3] = ["getup", "standup", "gettingup"];
@@ -21,7 +21,7 @@ const BAKED: &str = "sinew";
 pub struct OwnMotions {
     /// The clips, and their purposes.
     pub motions: MotionSet,
-    /// Choices and missing clips, one sentence each.
+    /// Notes on the choices and on missing clips, one sentence each.
     pub notes: Vec<String>,
 }
 
@@ -105,8 +105,8 @@ fn faster_among(clips: &[Clip]) -> Vec<usize> {
     found
 }
 
-/// True if a word of `name` starts with `word`. A word starts after a non-letter, or with a capital after a small
-/// letter.
+/// Returns true if a word of `name` starts with `word`. A word starts after a character that is no letter, or with a
+/// capital letter after a small one.
 fn has_word(name: &str, word: &str) -> bool {
     let mut last = ' ';
     name.char_indices().any(|(at, c)| {
@@ -147,11 +147,11 @@ pub fn looped_among(rig: &Rig, analysis: &RigAnalysis, clips: &[Clip]) -> Option
 /// Smallest difference of a key from the first key that counts as motion, as a share of the channel's largest number.
 const MOVES: f32 = 0.01;
 
-/// True if any joint of a clip moves. A static pose is not a walk, even if its name says so.
+/// Returns true if any joint of a clip moves. A static pose is not a walk, even if its name says so.
 fn moves(clip: &Clip) -> bool {
     clip.channels.iter().any(|channel| {
         let width = channel.property.width();
-        // A cubic key has slopes before and after its value.
+        // A cubic key has a slope before its value and one after it.
         let cubic = channel.interpolation == Interpolation::CubicSpline;
         let (stride, at) = if cubic { (3 * width, width) } else { (width, 0) };
         let keys: Vec<&[f32]> = channel.values.chunks_exact(stride).map(|key| &key[at..at + width]).collect();

@@ -57,12 +57,12 @@ fn flock_forms_and_stays_in_its_aviary() {
 }
 
 #[test]
-fn clock_has_the_period_of_theory() {
+fn pendulum_clock_has_the_theoretical_period() {
     pendulum_clock::main();
 }
 
 #[test]
-fn each_query_gives_its_answer() {
+fn each_query_gives_the_expected_result() {
     probes::main();
 }
 

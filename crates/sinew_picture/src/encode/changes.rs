@@ -10,8 +10,8 @@ pub(super) struct Changes {
 }
 
 impl Changes {
-    /// Returns the rectangle that differs from the last image, with its pixels as RGB: the whole image the first
-    /// time, one pixel if nothing differs. Its left and top are multiples of `grid`.
+    /// Returns the rectangle in which the image differs from the last one, with its pixels as RGB. It is the whole
+    /// image for the first one, and a single pixel if nothing differs. Its left and top are multiples of `grid`.
     pub(super) fn take(&mut self, image: &Image, grid: usize) -> (Rect, Vec<u8>) {
         let (width, height) = (image.width as usize, image.height as usize);
         let pixel =

@@ -10,10 +10,11 @@ use std::borrow::Cow;
 /// long runs of unchanged pixels keep the file small.
 const UNSEEN_CHANGE: u8 = 5;
 
-/// Strength of the dither, in steps of 1/255: enough to break the bands of a clear sky; more would cost bytes.
+/// Strength of the dither, in steps of 1/255: enough to hide the bands in a clear sky; a stronger dither makes files
+/// larger.
 const DITHER: i32 = 3;
 
-/// Order in which the pixels of a 4 × 4 square get brighter (Bayer 1973).
+/// Thresholds of ordered dithering in a square of 4 × 4 pixels (Bayer 1973).
 const BAYER: [[i32; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 
 pub(super) struct GifWriter {

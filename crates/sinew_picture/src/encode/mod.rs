@@ -45,7 +45,7 @@ pub enum EncodeError {
     #[error("a picture file needs at least one image")]
     Empty,
     /// An image has no pixels, or its bytes do not fit its size.
-    #[error("an image of {width} × {height} with {bytes} bytes is no image")]
+    #[error("an image of {width} × {height} pixels cannot have {bytes} bytes")]
     Malformed {
         /// Width in pixels.
         width: u32,
@@ -107,7 +107,7 @@ impl Movie {
     /// # Panics
     /// If `fps` is outside 1..=100.
     pub fn new(format: PictureFormat, fps: u32) -> Self {
-        assert!((1..=100).contains(&fps), "{fps} images a second");
+        assert!((1..=100).contains(&fps), "the rate must be 1 to 100 images a second, not {fps}");
         Self { format, fps, size: None, writer: None }
     }
 

@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn few_colours_are_kept() {
+    fn image_of_few_colours_keeps_them() {
         let mut histogram = Histogram::new();
         let wanted = [[0, 0, 0], [255, 255, 255], [200, 16, 40]];
         for (i, &color) in wanted.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Pipeline from triangles to colours: clipped, rasterised, shadowed, shaded.
+//! Pipeline from triangles to colours: clipping, rasterising, shadows, shading.
 
 pub(crate) mod clip;
 pub(crate) mod raster;

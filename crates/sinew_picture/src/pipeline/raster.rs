@@ -32,10 +32,10 @@ pub(crate) struct Samples {
     ids: Vec<u32>,
 }
 
-/// The id that means no triangle.
+/// Id of a sample that no triangle covers.
 pub(crate) const NOTHING: u32 = u32::MAX;
 
-/// A number that changes linearly over the picture.
+/// A quantity that changes linearly over the picture.
 #[derive(Clone, Copy, Debug)]
 struct Ramp {
     x0: f32,
@@ -54,7 +54,7 @@ pub(crate) struct Footprint {
     id: u32,
 }
 
-/// Order of a triangle's corners as seen from the camera.
+/// Winding of a triangle's corners as seen from the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Winding {
     CounterClockwise,
@@ -222,7 +222,8 @@ impl Cells for Nearest<'_> {
         let old = L::load(depth);
         let is_nearer = L::gt(z, old) & inside;
         L::select(is_nearer, z, old).store(depth);
-        // Selects whole numbers by their bits; as floats the bits may be unusual values, which does no harm.
+        // Select integers through their bits as floats. The bits may be those of a NaN or a subnormal, but no
+        // arithmetic uses them.
         let (mut bits, mut chosen) = ([0.0; WIDTH], [0.0; WIDTH]);
         for i in 0..WIDTH {
             bits[i] = f32::from_bits(ids[i]);
@@ -235,7 +236,7 @@ impl Cells for Nearest<'_> {
     }
 }
 
-/// Column where one edge begins or ends a row, walked down row by row without a division.
+/// Column at which an edge begins or ends each row of a triangle, updated from row to row without a division.
 #[derive(Clone, Copy, Debug)]
 struct EdgeWalk {
     /// Quotient and remainder of `value / pace`, with `value` the edge function at column 0 of the row.

@@ -187,7 +187,7 @@ impl<'a> Shader<'a> {
         lifted.y.store(&mut y);
         lifted.z.store(&mut z);
         depths.store(&mut depth);
-        // Behind the eye the ray hits the plane in reverse, and the interval between is invalid.
+        // If one of the rays hits the plane only behind the eye, the segment between the two points is not valid.
         let is_before = depth[0] > 0.0 && depth[SPAN - 1] > 0.0;
         let (first, last) = (Vec3::new(x[0], y[0], z[0]), Vec3::new(x[SPAN - 1], y[SPAN - 1], z[SPAN - 1]));
         if is_before && self.shadow.is_lit_between(first, last) {
@@ -219,7 +219,8 @@ impl<'a> Shader<'a> {
             let [a, b, c] = triangle.corners.map(|corner| model.uvs[corner as usize]);
             let uv = a + (b - a) * hit.shares[0] + (c - a) * hit.shares[1];
             let pixel = hit.depth * self.view.pixel_size();
-            // At a slant a pixel covers more texels. The effect is limited: a sharp texture is worth some shimmer.
+            // On a slanted surface a pixel covers more texels. Limit this effect, because a sharp texture is worth some
+            // shimmer.
             let cos_view = max(triangle.face.dot(self.view.eye - hit.point) / hit.depth, 0.15);
             let texels = texture.texels() * uv_per_area([a, b, c], triangle.m) * pixel * pixel / cos_view;
             base = multiply(base, texture.sample(uv, texture.level_for(texels), self.tables));

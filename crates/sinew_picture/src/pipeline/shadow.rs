@@ -13,7 +13,8 @@ pub(crate) struct ShadowMap {
     size: usize,
     /// Height toward the sun per texel; −∞ for empty ones. Rows are whole lanes.
     heights: Vec<f32>,
-    /// Greatest height per square of [`BLOCK`] texels: most points are above all shapes that could shade them.
+    /// Largest height in each square of [`BLOCK`] texels. It decides most points quickly, because most points are above
+    /// all shapes that could shade them.
     highest: Vec<f32>,
     /// Triangles that [`Self::finish`] draws into the map.
     casting: Vec<Footprint>,
@@ -276,7 +277,7 @@ impl HeightOverMap {
         let (bx, by, bz) = (b[0] - a[0], b[1] - a[1], b[2] - a[2]);
         let (cx, cy, cz) = (c[0] - a[0], c[1] - a[1], c[2] - a[2]);
         let det = bx * cy - cx * by;
-        // A triangle seen from its edge covers no texel; any finite slope is correct.
+        // A triangle that is seen edge-on covers no texel, so any finite slope is correct.
         let inverse = if det.abs() > 1e-12 { 1.0 / det } else { 0.0 };
         Self { base: a, per_x: (bz * cy - cz * by) * inverse, per_y: (cz * bx - bz * cx) * inverse }
     }

@@ -193,7 +193,7 @@ fn a_floor_of_thousands_of_kilometres_reaches_the_horizon() {
 }
 
 #[test]
-fn back_faces_are_drawn_or_not_as_asked() {
+fn back_faces_are_drawn_only_if_both_sides_are() {
     let front = [Vec3::new(-1.0, -1.0, -2.0), Vec3::new(1.0, -1.0, -2.0), Vec3::new(0.0, 1.0, -2.0)];
     let back = [front[0], front[2], front[1]];
     let seen = |points: [Vec3; 3], faces: Faces| {
@@ -222,7 +222,7 @@ fn glass_blends_with_the_background() {
 }
 
 #[test]
-fn textures_lie_the_right_way_up() {
+fn texture_is_drawn_upright_with_its_origin_at_the_top_left() {
     let quadrants = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]];
     let rgba = (0..64).flat_map(|i| quadrants[(i / 32) * 2 + (i % 8) / 4]).collect();
     let corner = |x: f32, y: f32| Vec3::new(x, y, -1.0);
@@ -262,7 +262,7 @@ fn lines_hide_behind_surfaces_unless_on_top() {
 }
 
 #[test]
-fn captions_are_written_where_they_are_asked_for() {
+fn captions_appear_at_their_positions() {
     let mut scene = plain(vec![]);
     scene.captions = vec![
         Caption { x: 4, y: 4, scale: 1, ..Caption::new("I") },

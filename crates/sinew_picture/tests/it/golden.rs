@@ -13,13 +13,13 @@ const SMALL: RenderSettings = RenderSettings {
 };
 
 #[test]
-fn the_picture_of_the_stairs() {
+fn picture_of_the_stairs_has_the_recorded_hash() {
     let image = Renderer::new(SMALL).render(&stairs::scene(0.9), &stairs::camera(0.9));
     assert_eq!(format!("{:016x}", hash_bytes(&image.rgba)), "6e72deddc73c4ef1");
 }
 
 #[test]
-fn the_movie_of_the_stairs() {
+fn movie_of_the_stairs_has_the_recorded_hash() {
     let mut renderer = Renderer::new(SMALL);
     let images = [0.0, 0.04, 0.08].map(|time| renderer.render(&stairs::scene(time), &stairs::camera(time)));
     let bytes = encode::encode(PictureFormat::Gif, &images, 25).expect("three images");
@@ -27,7 +27,7 @@ fn the_movie_of_the_stairs() {
 }
 
 #[test]
-fn the_number_of_threads_and_earlier_pictures_change_nothing() {
+fn picture_is_independent_of_threads_and_earlier_pictures() {
     let scene = stairs::scene(0.5);
     let camera = stairs::camera(0.5);
     let alone = Renderer::new(SMALL).render(&scene, &camera);

@@ -165,16 +165,21 @@ fn stretches() -> Drawing {
 }
 
 #[test]
-fn pictures_show_what_the_library_does() {
+fn pictures_of_the_guide_are_up_to_date() {
     for (name, drawing) in [("jitters", jitters()), ("sinks", sinks()), ("stretches", stretches())] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(FOLDER).join(format!("{name}.png"));
         let due = drawing.bytes();
         if std::env::var_os("SINEW_BLESS").is_some() {
-            std::fs::create_dir_all(path.parent().expect("a folder")).expect("it can be made");
-            std::fs::write(&path, &due).expect("it can be written");
+            std::fs::create_dir_all(path.parent().expect("a folder")).expect("the folder can be created");
+            std::fs::write(&path, &due).expect("the picture can be written");
         }
         let is = std::fs::read(&path).expect("the named item exists");
-        assert_eq!(hash_bytes(&is), hash_bytes(&due), "{}: bless it, and look at it", path.display());
+        assert_eq!(
+            hash_bytes(&is),
+            hash_bytes(&due),
+            "{} differs from the drawn picture: run with SINEW_BLESS set, and check the new picture",
+            path.display()
+        );
         assert!(due.len() < 100_000, "{} bytes", due.len());
     }
 }

@@ -48,7 +48,7 @@ pub struct BuildOptions {
     pub limits: LimitSource,
 }
 
-/// Reason why there is no ragdoll.
+/// Error returned when no ragdoll can be built.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum BuildError {
     /// The file has meshes or bones but no skin that connects them.
@@ -63,7 +63,7 @@ pub enum BuildError {
     /// The requested mass is not a positive number.
     #[error("a mass of {0} kg: it must be positive")]
     Mass(f32),
-    /// Limits shall be learned, but there is no clip.
+    /// The options ask for learned limits, but no clip moves a joint.
     #[error("no clip moves a joint: there are no limits to learn")]
     NoClips,
 }
@@ -83,7 +83,7 @@ pub fn build(
 /// Function from a body's index, its fit, and a function that fits another kind of shape, to the new fit.
 type Refit<'a> = dyn Fn(usize, Fit, &dyn Fn(ShapeChoice) -> Fit) -> Fit + 'a;
 
-/// Changes that settings make during the build.
+/// Changes that settings make to a ragdoll during the build.
 pub(crate) struct Overrides<'a> {
     /// Replaces a body's shape.
     pub shape: &'a Refit<'a>,
@@ -100,7 +100,7 @@ impl Overrides<'_> {
         Overrides { shape: &|_, fit, _| fit, disable: Vec::new(), enable: Vec::new(), takes: &[] }
     }
 
-    /// Returns the pairs that do not collide.
+    /// Returns the pairs that do not collide: `disabled`, changed by the overrides.
     fn pairs(&self, disabled: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
         let mut pairs: Vec<_> = disabled.into_iter().filter(|pair| !self.enable.contains(pair)).collect();
         pairs.extend(&self.disable);
@@ -110,7 +110,7 @@ impl Overrides<'_> {
     }
 }
 
-/// Like [`build`], with changes between its stages.
+/// Like [`build`], but applies overrides between its stages.
 pub(crate) fn build_overridden(
     rig: &Rig,
     analysis: &RigAnalysis,
@@ -123,7 +123,7 @@ pub(crate) fn build_overridden(
     if let Some(mass) = options.mass.filter(|mass| !(mass.is_finite() && *mass > 0.0)) {
         return Err(BuildError::Mass(mass));
     }
-    // Character space has the soles at y = 0.
+    // Move the origin so that the soles are at y = 0 in character space.
     let character_from_model =
         Transform::from_translation(Vec3::Y * -analysis.floor) * analysis.character_from_model;
     let bind =
@@ -181,8 +181,8 @@ pub(crate) fn build_overridden(
     Ok((def, report))
 }
 
-/// Returns a note on a mass that was kept within the usual ones of such an animal; `None` if it was not. `flesh` is the
-/// mass that the skin encloses, kg.
+/// Returns a note if the mass was limited to the usual range of such an animal, otherwise `None`. `flesh` is the mass
+/// that the skin encloses, kg.
 fn mass_of_kind(animal: Animal, unit_scale: f32, total_mass: f32, flesh: f32) -> Option<String> {
     let [least, most] = animal.mass_at(unit_scale);
     let is_kept = |end: f32| (total_mass / end - 1.0).abs() < 1e-3;
@@ -245,7 +245,7 @@ fn planned(
     options: &BuildOptions,
     takes: &[Take],
 ) -> Result<Planned, BuildError> {
-    // The mass is not known yet; only friction depends on it.
+    // The mass is not known yet. Pass 1 kg, because only the joints' friction depends on it.
     let mut plans = joints(bones, fits, 1.0);
     let mut limits = vec![LimitSource::Anatomy; plans.len()];
     if options.limits == LimitSource::Clips {

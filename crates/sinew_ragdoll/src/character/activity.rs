@@ -40,7 +40,7 @@ impl Activity {
         }
     }
 
-    /// Returns the time for which a character has lain, in the two lying states.
+    /// Returns the time for which a limp or preparing character has lain; `None` in other states.
     pub fn stillness(&self) -> Option<&Stillness> {
         match self {
             Self::Limp(lying) => Some(&lying.stillness),
@@ -72,7 +72,7 @@ impl Activity {
         }
     }
 
-    /// Returns a number from 1 for a body near the ground, which hardly falls, to 0 for a body that stands upright.
+    /// Returns how near to the ground the body is: 1 for a body that lies, 0 for one that stands upright.
     pub fn lowness(&self, def: &CharacterDef, animator: &Animator) -> f32 {
         match self {
             Self::Limp(_) | Self::Preparing(_) => 1.0,
@@ -89,7 +89,7 @@ pub(super) struct Flinch {
     pub seconds: f32,
 }
 
-/// Returns the time that a limb takes to return, seconds.
+/// Returns the time that a struck limb takes to return to its clips, seconds.
 fn comes_back() -> f32 {
     RETURNED_AFTER * FLINCH_HALF_LIFE
 }

@@ -4,11 +4,11 @@ use crate::character::tuning::{LEGS_WEAKEN, LOW_STANDS, TRUNK_WEAKENS};
 use crate::def::RagdollDef;
 use crate::drive::{DriveMode, Drives, Muscle};
 
-/// Drive of a struck limb until it returns.
+/// Drive of a struck limb until it starts to return.
 const GIVING: Muscle = Muscle { hertz: 3.0, damping_ratio: 1.0, strength: 0.5 };
 
-/// Returns the impulse that makes a character at height `lowness` (0 upright, 1 lying) fall, N·s; `least` is the
-/// threshold upright.
+/// Returns the impulse that makes a character fall, N·s. `least` is the threshold of an upright character; `lowness` is
+/// 0 for an upright character and 1 for one that lies.
 pub(super) fn felling(least: f32, lowness: f32) -> f32 {
     least * (1.0 + lowness * (LOW_STANDS - 1.0))
 }

@@ -19,7 +19,7 @@ use std::sync::Arc;
 impl Character {
     // Entering and leaving
 
-    /// Creates an animated character in a world, with a mover and hit bodies by [`CharacterDef::in_world`].
+    /// Creates an animated character in a world, with a mover and hit bodies according to [`CharacterDef::in_world`].
     /// `world_from_character` is its pose (metres, +Y up, +Z forward). [`despawn`](Self::despawn) removes the character
     /// with all its parts.
     ///
@@ -31,8 +31,8 @@ impl Character {
         character
     }
 
-    /// Adds a character made by [`new`](Self::new) to a world, like [`spawn`](Self::spawn). No effect if it is in a
-    /// world already.
+    /// Adds a character that [`new`](Self::new) created to a world, like [`spawn`](Self::spawn). No effect if it is in
+    /// a world already.
     ///
     /// # Panics
     /// If the character's transform is not finite, or the character is not animated.
@@ -40,8 +40,8 @@ impl Character {
         if self.is_in_world() {
             return;
         }
-        assert!(self.figure.place.is_finite(), "a character stands at a finite place");
-        assert!(self.state() == State::Animated, "a character comes into a world standing");
+        assert!(self.figure.place.is_finite(), "the character's transform must be finite");
+        assert!(self.state() == State::Animated, "only an animated character can enter a world");
         self.detail = Some(Detail::default());
         self.settle_detail(world);
     }
@@ -61,7 +61,7 @@ impl Character {
     /// # Panics
     /// If the transform is not finite.
     pub fn teleport(&mut self, world: &mut World, world_from_character: Transform) {
-        assert!(world_from_character.is_finite(), "a character stands at a finite place");
+        assert!(world_from_character.is_finite(), "the character's transform must be finite");
         let moved = world_from_character * self.figure.place.inverse();
         self.figure.carry(world_from_character);
         for &body in self.physique.own() {
@@ -80,7 +80,7 @@ impl Character {
         if let Activity::Powered(balance) = &mut self.activity {
             balance.stumble = None;
         }
-        // Pins are fixed to the world: they would pull the character back.
+        // Pins are fixed to the world, so they would pull the character back to its old position.
         match (self.activity.state(), &self.physique.ragdoll) {
             (State::Flinching | State::Powered, _) => self.drive_bodies(world),
             (State::Preparing, Some(ragdoll)) => self.physique.drives.release(world, ragdoll),
@@ -88,16 +88,17 @@ impl Character {
         }
     }
 
-    /// Returns the character's level of detail, now or once clips move it again. Full for a character outside of a
-    /// world.
+    /// Returns the character's level of detail. If clips do not move the character now, this is the level that applies
+    /// once they do again. Full for a character outside of a world.
     pub fn level_of_detail(&self) -> Detail {
         self.detail.unwrap_or_default()
     }
 
     /// Sets the character's level of detail: immediately if clips move it, otherwise once they do again, because a
     /// flinch, a fall or a get-up finishes first. Pose and position do not change. Below [`Detail::HitBodies`] its
-    /// bodies leave the world, unless it holds a body; they return with other ids. Its springs then ease to the pose
-    /// and stop costing time, until they return with the motion of the pose. No effect outside of a world.
+    /// bodies leave the world, unless it holds a body; they return with other ids. Its springs then fade to the pose
+    /// and are no longer simulated; when they return, they start with the motion of the pose. No effect outside of a
+    /// world.
     pub fn set_level_of_detail(&mut self, world: &mut World, detail: Detail) {
         if self.is_in_world() {
             self.detail = Some(detail);
@@ -117,7 +118,7 @@ impl Character {
         self.activity.state()
     }
 
-    /// Returns true while the character steps to catch itself.
+    /// Returns true while the character takes steps to regain its balance.
     pub fn stumbles(&self) -> bool {
         self.activity.stumble().is_some()
     }
@@ -241,7 +242,7 @@ impl Character {
     /// # Panics
     /// If the velocity is not finite.
     pub fn set_move(&mut self, velocity: Vec3) {
-        assert!(velocity.is_finite(), "a velocity is finite");
+        assert!(velocity.is_finite(), "the velocity must be finite");
         if self.is_in_world() {
             self.gait.wish = Some(velocity);
         }
@@ -258,7 +259,7 @@ impl Character {
     /// # Panics
     /// If the direction is not finite.
     pub fn face(&mut self, direction: Vec3) {
-        assert!(direction.is_finite(), "a direction is finite");
+        assert!(direction.is_finite(), "the direction must be finite");
         let level = normalize_or(direction * Vec3::new(1.0, 0.0, 1.0), Vec3::ZERO);
         if self.is_in_world() && level != Vec3::ZERO {
             self.gait.facing = Some(level);
@@ -313,7 +314,7 @@ impl Character {
                 self.physique.drives.set_all(DriveMode::Keyed, POWERED_HALF_LIFE);
                 self.activity = Activity::Flinching(Flinch { seconds: RETURNED_AFTER * POWERED_HALF_LIFE });
             }
-            // Kinematic bodies moved by clips would tear off the held bodies.
+            // Kinematic bodies that clips move would tear off the bodies that they hold.
             (Preset::Animated, State::Limp | State::Preparing)
                 if may_get_up && !self.grips.is_gripped(&self.physique, world) =>
             {
@@ -349,8 +350,11 @@ impl Character {
     /// # Panics
     /// If the transform or the phase is not finite, or `seconds` is negative or not finite.
     pub fn return_to_clip(&mut self, world: &mut World, place: Transform, phase: f32, seconds: f32) {
-        assert!(place.is_finite() && phase.is_finite(), "a character returns to a finite place and moment");
-        assert!((0.0..f32::INFINITY).contains(&seconds), "a return takes 0 s or longer, not {seconds}");
+        assert!(place.is_finite() && phase.is_finite(), "the transform and the phase must be finite");
+        assert!(
+            (0.0..f32::INFINITY).contains(&seconds),
+            "the transition must take 0 s or longer, not {seconds} s"
+        );
         if self.physique.may_get_up(&self.def) {
             self.return_to(world, place, phase, seconds);
         }
@@ -412,9 +416,12 @@ impl Character {
     #[track_caller]
     pub fn hold(&mut self, world: &mut World, bone: &str, held: BodyId, grip: &Grip) -> JointId {
         let body = self.def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
-        assert!(self.physique.has(body), "it has lost '{bone}'");
-        assert!(!self.physique.ids().is_empty(), "a character without bodies holds nothing");
-        assert!(self.grips.held().all(|other| other != held), "it holds that body already");
+        assert!(self.physique.has(body), "the body '{bone}' was detached from the character");
+        assert!(
+            !self.physique.ids().is_empty(),
+            "a character needs bodies in the world to hold another body"
+        );
+        assert!(self.grips.held().all(|other| other != held), "the character holds this body already");
         if let Some((owner, part)) = world.body_owner(held).filter(|_| !is_limb(world, held)) {
             panic!("{held:?} is the {}'s {part}: `Character::grab` takes hold of it", owner.name);
         }
@@ -518,7 +525,7 @@ impl Character {
     pub fn detach(&mut self, world: &mut World, bone: &str) -> Option<Limb> {
         let def = self.def.clone();
         let first = def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
-        assert!(first > 0, "a character is what hangs on its pelvis: cut off the legs or the trunk");
+        assert!(first > 0, "the pelvis cannot be detached: detach the legs or the trunk instead");
         if !self.physique.has(first) {
             return None;
         }

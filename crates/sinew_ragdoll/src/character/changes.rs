@@ -1,4 +1,4 @@
-//! State changes that involve several parts.
+//! State changes of a character that involve several of its components.
 
 use super::activity::{Activity, Flinch};
 use super::clearance::Depths;
@@ -53,7 +53,7 @@ impl Character {
 
     // Detail
 
-    /// Adds or removes bodies and mover by the character's level of detail.
+    /// Adds or removes bodies and mover according to the character's level of detail.
     pub(super) fn settle_detail(&mut self, world: &mut World) {
         let Some(detail) = self.detail else { return };
         if self.state() != State::Animated || self.physique.ragdoll.is_some() {
@@ -86,7 +86,7 @@ impl Character {
         wear.dress(bearer, world);
     }
 
-    /// Removes all parts of the character from the world; its clips continue at its last position.
+    /// Removes the character's bodies, joints and mover from the world; its clips continue at its last position.
     pub(super) fn leave(&mut self, world: &mut World) {
         self.grips.release_all(self.physique.own(), false, world, &mut self.events);
         self.wear.garments.take_off(world);
@@ -116,7 +116,7 @@ impl Character {
 
     // Bodies and clips
 
-    /// Returns the prediction of the clips, with buffers.
+    /// Returns the predictor of the clips' poses, and the buffers that it uses.
     fn ahead(&mut self) -> (Foresight<'_>, &mut Scratch) {
         let foresight = Foresight {
             def: &self.def,
@@ -130,7 +130,7 @@ impl Character {
         (foresight, &mut self.scratch)
     }
 
-    /// Returns true if every body is near its pose in the clips. An obstacle may have kept a body away.
+    /// Returns true if every body is near its pose in the clips; false if, for instance, an obstacle keeps a body away.
     pub(super) fn is_at_clips(&mut self, world: &World) -> bool {
         let (foresight, scratch) = self.ahead();
         foresight.next(world.def().dt(), scratch);
@@ -145,7 +145,7 @@ impl Character {
         foresight.carried(scratch)
     }
 
-    /// Drives the bodies toward the pose that its clips will have at the end of the next step.
+    /// Drives the bodies toward the pose that the clips will have at the end of the next step.
     pub(super) fn drive_bodies(&mut self, world: &mut World) {
         if self.physique.ragdoll.is_some() {
             let (foresight, scratch) = self.ahead();
@@ -154,7 +154,8 @@ impl Character {
         }
     }
 
-    /// Turns the bodies into a ragdoll, at the pose and speed of the animation, with the same drive for all.
+    /// Turns the bodies into a ragdoll at the pose and speed of the animation, and sets the drive `mode` for all of
+    /// them.
     pub(super) fn take_bodies(&mut self, world: &mut World, mode: DriveMode, half_life: f32) {
         if self.physique.ragdoll.is_none() {
             self.become_bodies(world, self.def.in_world.rule());
@@ -176,7 +177,7 @@ impl Character {
         self.physique.wake(&self.def, &states, rule, world);
     }
 
-    /// Returns control of the bodies to the clips: the bodies leave the world, or stay as hit bodies.
+    /// Lets the clips move the bodies again: the bodies leave the world, or stay in it as hit bodies.
     pub(super) fn leave_bodies(&mut self, world: &mut World) {
         self.physique.let_go(&self.def, world);
         let Some(ragdoll) = self.physique.ragdoll.take() else { return };
@@ -190,8 +191,8 @@ impl Character {
         self.physique.keep_own();
     }
 
-    /// Gives kinematic bodies the velocities of their clips. Their present velocities, which move them to their pose
-    /// within a step, would throw them when a mover has just climbed a kerb.
+    /// Gives those of `bodies` that are kinematic the velocities of their clips. Their present velocities move them to
+    /// their pose within a step and would throw them once dynamic, for instance after the mover climbed a kerb.
     fn slow_led(&mut self, world: &mut World, bodies: &[usize]) {
         let (foresight, scratch) = self.ahead();
         foresight.next(world.def().dt(), scratch);
@@ -213,7 +214,7 @@ impl Character {
         impulse: Vec3,
         point: Option<Vec3>,
     ) -> f32 {
-        assert!(body < self.def.ragdoll.bodies.len(), "there is such a body");
+        assert!(body < self.def.ragdoll.bodies.len(), "the character has no body with the index {body}");
         if self.physique.has(body) && self.react(world, body, impulse) {
             self.physique.push(&self.def, body, impulse, point, world)
         } else {
@@ -221,8 +222,8 @@ impl Character {
         }
     }
 
-    /// Makes the character flinch or fall after a contact hit one of its bodies. A dynamic body received the impulse
-    /// in the contact already.
+    /// Makes the character flinch or fall after a contact hit one of its bodies. If that body was dynamic, the contact
+    /// has already applied the impulse.
     pub(super) fn be_struck(&mut self, world: &mut World, body: usize, strike: Strike) {
         let is_led = world.kind(self.physique.ids()[body]) != BodyKind::Dynamic;
         if self.react(world, body, strike.impulse) && is_led {
@@ -230,10 +231,11 @@ impl Character {
         }
     }
 
-    /// Makes the character flinch or fall; returns false if the hit may move no body.
+    /// Makes the character flinch or fall after an impulse on a body; returns false if the impulse must not be applied
+    /// to the bodies.
     pub(super) fn react(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
-        assert!(impulse.is_finite(), "an impulse is finite");
-        assert!(body < self.def.ragdoll.bodies.len(), "there is such a body");
+        assert!(impulse.is_finite(), "the impulse must be finite");
+        assert!(body < self.def.ragdoll.bodies.len(), "the character has no body with the index {body}");
         if self.stands_blow(Blow { body, impulse, state: self.state() }) {
             return self.flinch(world, body, impulse);
         }
@@ -256,8 +258,9 @@ impl Character {
             }
     }
 
-    /// Returns true if a field that gave the character this momentum makes it fall. Without a threshold the usual one
-    /// applies, so that light wind does not count as a hit.
+    /// Returns true if a field that gave the character this momentum makes it fall. With
+    /// [`Toughness::None`](super::Toughness::None) the default threshold applies, so that light wind does not make the
+    /// character fall.
     pub(super) fn is_swept_by(&self, blow: Blow) -> bool {
         let lowness = self.activity.lowness(&self.def, &self.gait.animator);
         let fells = |least: f32| blow.impulse.length() >= blows::felling(least, lowness);
@@ -268,8 +271,7 @@ impl Character {
         }
     }
 
-    /// Makes the struck limb weak; returns false if no limb may be weak. While the character is driven to the start
-    /// of a clip, every limb may be weak.
+    /// Makes the struck limb weak; returns false if the character's state does not allow a flinch.
     pub(super) fn flinch(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
         let state = self.state();
         let gives_way = match state {
@@ -301,7 +303,7 @@ impl Character {
         gives_way
     }
 
-    /// Adds an impulse that the character's bodies received, N·s.
+    /// Reports an impulse on the bodies of a powered character (N·s) to its balance, which may start a step.
     fn shove(&mut self, world: &mut World, impulse: Vec3) {
         let Activity::Powered(balance) = &mut self.activity else { return };
         let on = Balancing {
@@ -327,7 +329,7 @@ impl Character {
 
     // Powered
 
-    /// Muscles and pins drive all bodies to the clips.
+    /// Makes muscles and pins drive all bodies to the clips.
     pub(super) fn power(&mut self, world: &mut World) {
         self.end_clearing(world);
         self.take_bodies(world, DriveMode::Powered(Muscle::ALIVE), 0.0);
@@ -345,7 +347,7 @@ impl Character {
 
     // Limp characters
 
-    /// Makes the character limp at the pose and speed of the animation.
+    /// Makes an animated character limp at the pose and speed of the animation.
     pub(super) fn fall(&mut self, world: &mut World) {
         if self.physique.ragdoll.is_some() {
             return self.fall_again(world);
@@ -389,7 +391,7 @@ impl Character {
         self.clear(world);
     }
 
-    /// Continues the displacement out of a wall for the next step, or makes the bodies fall where it ends.
+    /// Continues the displacement out of a wall in the next step, or lets the bodies fall once it has ended.
     pub(super) fn go_out(&mut self, world: &mut World) {
         let Activity::Limp(lying) = &mut self.activity else { return };
         if !lying.clearing.go_on(self.physique.own(), world) {
@@ -397,7 +399,7 @@ impl Character {
         }
     }
 
-    /// Makes bodies that are being moved out of a wall fall from their current positions.
+    /// Ends a displacement out of a wall: the bodies fall from their current positions.
     pub(super) fn end_clearing(&mut self, world: &mut World) {
         let Activity::Limp(lying) = &mut self.activity else { return };
         let clearing = core::mem::take(&mut lying.clearing);
@@ -409,7 +411,7 @@ impl Character {
 
     // Getting up
 
-    /// Gets up, or first prepares the body for getting up.
+    /// Starts a get-up, or first drives the body to the start of a get-up clip.
     pub(super) fn prepare(&mut self, world: &mut World) {
         let def = self.def.clone();
         let lies = self.figure.stance(&def, &mut self.scratch);
@@ -426,7 +428,7 @@ impl Character {
         prepare::draw(&def, &choice, &mut self.physique, &mut self.scratch, world);
     }
 
-    /// Gets up if no body lies on the character and no mover is in the way; otherwise the character waits.
+    /// Starts a get-up if no body loads the character and no mover is in the way; otherwise the character waits.
     pub(super) fn get_up_where_free(&mut self, world: &mut World) {
         let lies = self.figure.stance(&self.def, &mut self.scratch);
         let moves = self.def.moves();
@@ -440,13 +442,14 @@ impl Character {
             && (is_taken(&self.def, world, place.translation)
                 || is_under(&self.def, self.physique.own(), steps, world));
         let Some(still) = self.activity.stillness_mut() else { return };
-        // A character on top may have got up in this update and leaves only with the next step.
+        // Wait for one more update: a character on top may have got up in this update, and its bodies move away only in
+        // the next step.
         if core::mem::replace(&mut still.free, !waits) && !waits {
             self.get_up(world);
         }
     }
 
-    /// Starts the get-up clip at the time most similar to the pose.
+    /// Starts the get-up clip that fits the pose best, at the time that fits best.
     pub(super) fn get_up(&mut self, world: &mut World) {
         let def = self.def.clone();
         let moves = def.moves();
@@ -482,7 +485,7 @@ impl Character {
         self.stand_up(world, LYING_MOVER);
     }
 
-    /// Returns to the looped clip.
+    /// Blends from the end of a get-up clip into the looped clip.
     pub(super) fn stand(&mut self, world: &World) {
         let def = self.def.clone();
         let moves = def.moves();
@@ -520,8 +523,8 @@ impl Character {
         }
     }
 
-    /// Moves the character to the ground at `place`, stops all tracks of the whole body, and lets the present pose and
-    /// motion decay within `seconds`. The world does not change yet.
+    /// Moves the character to the ground at `place`, tilted by `lean`, stops all tracks of the whole body, and lets the
+    /// present pose and motion decay within `seconds`. Does not change the world.
     fn settle_into(&mut self, world: &World, place: Transform, lean: Vec3, seconds: f32) {
         let def = self.def.clone();
         let own = self.detail.map(|_| self.physique.own());
@@ -534,7 +537,7 @@ impl Character {
         self.take_over(world, standing(place, lean, pelvis, height), seconds);
     }
 
-    /// Returns the pose to the looped clip at `phase` seconds, for a character at `place`. The present pose and motion
+    /// Moves the character to `place` and plays its looped clip from `phase` seconds on. The present pose and motion
     /// decay within `seconds`.
     pub(super) fn return_to(&mut self, world: &mut World, place: Transform, phase: f32, seconds: f32) {
         self.end_clearing(world);
@@ -571,8 +574,8 @@ impl Character {
 
     // Detached limbs
 
-    /// Removes a limb's bodies and joints from the character and returns them: the present ones, or new ones for a
-    /// character without any.
+    /// Removes a limb's bodies and joints from the character and returns them. A character without bodies or joints in
+    /// the world gets new ones for this.
     pub(super) fn part_with(&mut self, world: &mut World, parts: &[usize]) -> (Vec<BodyId>, Vec<JointId>) {
         let (bodies, joints) = if self.physique.ragdoll.is_some() {
             self.slow_led(world, parts);
@@ -582,7 +585,7 @@ impl Character {
             self.physique.cut_led(&self.def, parts, states, world)
         };
         for &body in &bodies {
-            // A detached body collides like any body and does not stop movers.
+            // A detached body collides like any other body, but does not stop movers.
             let rule = ContactRule::Yields(Yields::default());
             world.set_contact_rule(sinew_physics::ShapeId { body, shape: 0 }, rule);
         }
@@ -591,11 +594,11 @@ impl Character {
         (bodies, joints)
     }
 
-    /// Continues without the detached bodies.
+    /// Updates the character after a limb was detached: it continues without the limb's bodies, or goes limp.
     pub(super) fn live_on(&mut self, world: &mut World) {
         self.scratch.posed.clear();
         match &mut self.activity {
-            // A still body may fall.
+            // A character that lay still may fall again.
             Activity::Limp(lying) => {
                 (lying.stillness.settled, lying.stillness.calm_steps) = (false, 0);
             }
@@ -610,7 +613,7 @@ impl Character {
         wear.rehang(bearer, world);
     }
 
-    /// Returns the springs and garments, with their wearer.
+    /// Returns the springs and garments, and the character's state on which they depend.
     pub(super) fn wearing(&mut self) -> (&mut Wear, Bearer<'_>) {
         let bearer = Bearer {
             def: &self.def,

@@ -1,5 +1,5 @@
-//! Moves a limp character out of walls and floors. Contacts push bodies out one by one and slowly, and out of a thin
-//! wall to both sides.
+//! Moves a limp character out of walls and floors. Contacts alone would push each body out separately and slowly, and
+//! could push the bodies out of a thin wall on both sides.
 
 use super::ground;
 use super::limp::Clearing;
@@ -10,7 +10,7 @@ use sinew_physics::{
     ShapeId, Velocity, World,
 };
 
-/// Starts to move all bodies together out of static shapes in which they are deep; `None` if no body is deep, or no
+/// Starts to move all bodies together out of static shapes that they penetrate deeply; `None` if no body is deep, or no
 /// displacement leads out.
 pub(super) fn begin(own: &[BodyId], world: &mut World) -> Option<Clearing> {
     let momentum: Vec3 = own.iter().map(|&body| world.velocity(body).linear * world.mass(body).mass).sum();
@@ -27,7 +27,7 @@ pub(super) fn begin(own: &[BodyId], world: &mut World) -> Option<Clearing> {
 }
 
 impl Clearing {
-    /// Continues for the next step; returns false where the way ends.
+    /// Sets the bodies' velocities for the next step; returns false at the end of the displacement.
     pub fn go_on(&mut self, own: &[BodyId], world: &mut World) -> bool {
         let way = &mut self.way;
         let dt = world.def().dt();
@@ -44,7 +44,7 @@ impl Clearing {
         true
     }
 
-    /// Makes the bodies fall from their current positions.
+    /// Makes the bodies dynamic at their current positions, with the stored velocities.
     pub fn end(self, own: &[BodyId], world: &mut World) {
         for (&body, &velocity) in own.iter().zip(&self.velocities) {
             world.set_kind(body, BodyKind::Dynamic);
@@ -53,8 +53,9 @@ impl Clearing {
     }
 }
 
-/// Returns the displacement by which the bodies together leave all shapes in which they are deep, world, metres; `None`
-/// if no body is deep, or no displacement leads out. `back` is the direction from which they came, of length 1 or 0.
+/// Returns the displacement by which the bodies together leave all shapes that they penetrate deeply, world axes,
+/// metres; `None` if no body is deep, or no displacement leads out. `back` is the direction from which the bodies came,
+/// of length 1, or 0 if they rest.
 fn way_out(world: &World, bodies: &[BodyId], back: Vec3) -> Option<Vec3> {
     let placed: Vec<(Shape, Transform)> = bodies.iter().flat_map(|&body| world.shapes(body)).collect();
     let moved = |way: Vec3| {
@@ -87,7 +88,8 @@ fn way_out(world: &World, bodies: &[BodyId], back: Vec3) -> Option<Vec3> {
     (way.length() > 0.0 && way.length() <= CLEARING_REACH).then_some(way)
 }
 
-/// Returns the deepest overlap with a static shape that pushes, if it is deeper than `limit`, metres.
+/// Returns the deepest overlap of the probes with a static shape that pushes; `None` if no overlap is deeper than
+/// `limit` metres.
 fn deepest(
     (world, filter): (&World, QueryFilter<'_>),
     probes: impl Iterator<Item = Probe>,
@@ -100,7 +102,8 @@ fn deepest(
     found.reduce(deeper)
 }
 
-/// Returns the directions of the shortest ways of probes out of a shape, and their opposites, each once.
+/// Returns the directions in which the probes leave a shape by the shortest displacement, and the opposite directions,
+/// without duplicates.
 fn directions(world: &World, probes: impl Iterator<Item = Probe>, obstacle: ShapeId) -> Vec<Vec3> {
     let only = |body, shape| obstacle == ShapeId { body, shape };
     let mut directions: Vec<Vec3> = Vec::new();

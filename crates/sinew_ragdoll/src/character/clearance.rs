@@ -1,9 +1,9 @@
-//! Keeps the skin out of the floor during transitions from bodies to a clip and between clips. Joints blend separately,
-//! so feet, hands and knees would pass through the floor although both poses are above it.
+//! Keeps the skin out of the floor during transitions from bodies to a clip and between clips. Each joint blends on its
+//! own, so feet, hands and knees would pass through the floor although both poses are above it.
 //!
-//! The allowed depth of each part changes gradually from that at the start of the transition to that in the clip.
-//! Deeper parts are raised: the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper
-//! arm.
+//! The allowed depth of each part changes gradually from its depth at the start of the transition to its depth in the
+//! clip. Parts that are deeper are raised: for trunk and knees the whole body moves up, for a foot or a hand its limb
+//! bends, and for an elbow the upper arm rotates.
 
 use super::stumble::level;
 use super::{CharacterDef, State};
@@ -24,15 +24,16 @@ pub(super) const PARTS: usize = 7;
 const TRUNK: usize = 0;
 /// Number of halvings of the angle by which a stiff arm is raised.
 const HALVINGS: usize = 10;
-/// Largest number of passes that raise trunk and limbs: raising a foot may press its knee into the floor.
+/// Largest number of passes that raise trunk and limbs. One pass may not suffice, because raising a foot may press its
+/// knee into the floor.
 const MOST_PASSES: usize = 3;
 pub(super) const FEET: [usize; 2] = [1, 2];
 const HANDS: [usize; 2] = [3, 4];
-/// Number of parts that move out of walls: the trunk, the feet, the hands.
+/// Number of parts that are moved out of walls: the trunk, two feet and two hands.
 pub(super) const MOVABLE: usize = 5;
 const ELBOWS: [usize; 2] = [5, 6];
 
-/// Depth of each part in the floor, metres; negative above it, −∞ for a missing part.
+/// Depth of each part in the floor, metres; negative above the floor, −∞ for a missing part.
 pub(super) type Depths = [f32; PARTS];
 
 /// A transition of a character, with the depths that its parts may have.
@@ -40,13 +41,13 @@ pub(super) type Depths = [f32; PARTS];
 pub(super) struct Passage {
     /// Depths at the start of the transition, at least 0.
     pub from: Depths,
-    /// Largest depths in the target, at least 0.
+    /// Largest depths in the target poses, at least 0.
     pub to: Depths,
-    /// Ankles at the start of the transition, world, left and right.
+    /// Transforms of the ankles at the start of the transition, world, left and right.
     pub ankles: [Transform; 2],
-    /// Smallest distance to the goal at which a foot steps, metres.
+    /// Least horizontal distance, metres, from which the height of a foot's step is computed.
     pub far: [f32; 2],
-    /// Seconds since the start of the transition, and its duration.
+    /// Seconds since the start of the transition.
     pub age: f32,
     pub seconds: f32,
     /// Smoothed height of the ground under each part over the floor of the clip, metres, and its rate of change, m/s.
@@ -59,11 +60,11 @@ pub(super) struct Passage {
 pub(super) struct Step {
     /// Ankle at the start of the step, character space.
     from: Transform,
-    /// Least distance to the foot's goal, metres.
+    /// Least horizontal distance, metres, from which the height of the step is computed.
     far: f32,
-    /// Share of the step that is done.
+    /// Share of the step's length that is done.
     along: f32,
-    /// Height of the foot above the straight line, as a share of the step height.
+    /// Height of the foot above the straight line between start and goal, as a share of the step's height.
     over: f32,
 }
 
@@ -77,7 +78,8 @@ impl Passage {
         })
     }
 
-    /// Returns the steps of the feet: both together while the character lies, alternately once it stands.
+    /// Returns the steps of the feet after `later` seconds more: both feet step together while the character lies, and
+    /// one after the other once it stands.
     pub fn steps(&self, later: f32, state: State, place: Transform) -> [Step; 2] {
         let u = if self.seconds > 0.0 { (self.age + later) / self.seconds } else { f32::INFINITY };
         [0, 1].map(|foot| {
@@ -88,7 +90,8 @@ impl Passage {
         })
     }
 
-    /// Returns the share of a lift that is applied; it returns to zero after the transition.
+    /// Returns the share of the lift out of the floor that is applied after `later` seconds more; it decreases to zero
+    /// after the transition.
     pub fn share(&self, later: f32, state: State) -> f32 {
         match state {
             State::GettingUp => 1.0,
@@ -104,13 +107,14 @@ impl Passage {
 #[derive(Clone, Copy, Debug)]
 struct LimbChain {
     bones: TwoBone,
-    /// Part of the limb's end, and of its middle joint if the limb raises that joint.
+    /// Index of the part at the limb's end.
     end: usize,
+    /// Index of the part at the limb's middle joint, if the limb raises that joint.
     middle: Option<usize>,
 }
 
 impl LimbChain {
-    /// Returns an ankle on its step to `to`; `None` if it is there already.
+    /// Returns the transform of an ankle that steps to `to`; `None` if the foot does not step.
     fn stepped(&self, to: Transform, steps: Option<[Step; 2]>, def: &CharacterDef) -> Option<Transform> {
         let foot = FEET.into_iter().position(|part| part == self.end)?;
         let Step { from, far, along, over } = steps?[foot];
@@ -133,7 +137,7 @@ impl LimbChain {
 #[derive(Clone, Copy, Debug)]
 struct StiffArm {
     shoulder: JointIdx,
-    /// Part of the arm: that of its hand.
+    /// Index of the arm's part, that of its hand.
     end: usize,
 }
 
@@ -146,7 +150,8 @@ pub(super) struct Clearance {
     stiff_arms: Vec<StiffArm>,
     /// Joint of each hand, and the skin of the hand with the objects that it holds.
     hands: Vec<(JointIdx, Surface)>,
-    /// Joints that are not descendants of the limb that carries their body, each with the joint that it follows.
+    /// Joints that must move with a limb although they are not its descendants in the rig, each with the joint that it
+    /// follows.
     strays: Vec<(JointIdx, JointIdx)>,
 }
 
@@ -180,7 +185,7 @@ impl Clearance {
         Self { parts, hands, strays: strays(rig, def), limbs, stiff_arms }
     }
 
-    /// Returns true for a rig without skin.
+    /// Returns true if no part has skin.
     pub fn is_empty(&self) -> bool {
         self.parts.is_empty()
     }
@@ -199,7 +204,7 @@ impl Clearance {
         -self.places(part, model, palette).iter().map(|place| place.y).fold(f32::INFINITY, min)
     }
 
-    /// Returns the depths of all parts; `model` is in character space.
+    /// Returns the depths of all parts in the pose `model`, which is in character space.
     pub fn depths(&self, model: &[Affine]) -> Depths {
         let mut palette = Vec::new();
         if self.parts.is_empty() {
@@ -208,7 +213,7 @@ impl Clearance {
         core::array::from_fn(|part| self.depth(part, model, &mut palette))
     }
 
-    /// Returns the largest depth of each part over some poses, at least 0.
+    /// Returns the largest depth of each part over all frames of a take, at least 0.
     pub fn deepest(&self, def: &CharacterDef, take: &Take) -> Depths {
         let (mut model, mut deepest) = (Vec::new(), [0.0; PARTS]);
         for frame in 0..take.frames() {
@@ -218,7 +223,7 @@ impl Clearance {
         deepest
     }
 
-    /// Raises parts beyond their allowed depth, by `share` of the excess.
+    /// Raises the parts that are deeper than allowed, by `share` of the excess.
     pub fn clear(
         &self,
         def: &CharacterDef,
@@ -277,8 +282,7 @@ impl Clearance {
         self.carry(def, &carried, 0..self.strays.len(), pose, model);
     }
 
-    /// Rotates a stiff arm about its shoulder, at most until it is level, so that its lowest point is `up` metres
-    /// higher.
+    /// Rotates a stiff arm about its shoulder until its lowest point is `up` metres higher, but not beyond level.
     fn raise_stiff(
         &self,
         def: &CharacterDef,
@@ -313,7 +317,8 @@ impl Clearance {
         turn_to(rig, arm.shoulder, turn * shoulder.rotation, &root, pose, model);
     }
 
-    /// Displaces the trunk and the ends of the limbs; ends that are not listed keep their positions. Character space.
+    /// Displaces the trunk and the ends of the limbs by `offsets`, in character space; the other ends keep their
+    /// positions.
     pub fn shift(
         &self,
         def: &CharacterDef,
@@ -349,7 +354,7 @@ impl Clearance {
         self.strays.iter().map(at).collect()
     }
 
-    /// Moves some of the strays to their transforms `carried`.
+    /// Moves the strays with these indices to the transforms `carried`, which are relative to their carriers.
     fn carry(
         &self,
         def: &CharacterDef,
@@ -372,7 +377,7 @@ impl Clearance {
         }
     }
 
-    /// Returns the joint from which a part extends: a shoulder, a hip, or the pelvis.
+    /// Returns the joint at the inner end of a part: a shoulder, a hip, or the pelvis.
     pub fn origin(&self, def: &RagdollDef, part: usize) -> Option<JointIdx> {
         match part {
             TRUNK => def.bodies.first().map(|pelvis| pelvis.joint),
@@ -415,7 +420,8 @@ impl Clearance {
     }
 }
 
-/// Returns the vertices of a body that are farthest in some directions, with their places; a vertex may repeat.
+/// Returns, for each of a set of directions, the vertex of a body that is farthest along it, with its position. A
+/// vertex may occur more than once.
 pub(super) fn outermost(surface: &Surface, body: usize, palette: &[Affine]) -> Vec<(usize, Vec3)> {
     let own = surface.sample.iter().copied().filter(|&vertex| surface.owner(vertex) == Some(body));
     let places: Vec<(usize, Vec3)> = own.map(|vertex| (vertex, surface.place(palette, vertex))).collect();
@@ -426,14 +432,15 @@ pub(super) fn outermost(surface: &Surface, body: usize, palette: &[Affine]) -> V
     directions().filter_map(farthest).collect()
 }
 
-/// Returns the surface of some vertices, each once.
+/// Returns the part of a surface that consists of these vertices, without duplicates.
 pub(super) fn part_without_repeats(surface: &Surface, mut vertices: Vec<usize>) -> Surface {
     vertices.sort_unstable();
     vertices.dedup();
     surface.part(&vertices)
 }
 
-/// Returns up to `most` of some points that are at least `apart` metres from each other, those of largest `size` first.
+/// Returns up to `most` of the points, each at least `apart` metres from the others; points with a larger `size` come
+/// first.
 pub(super) fn spread(mut left: Vec<Vec3>, apart: f32, most: usize, size: impl Fn(Vec3) -> f32) -> Vec<Vec3> {
     let mut chosen = Vec::new();
     while chosen.len() < most {
@@ -445,8 +452,8 @@ pub(super) fn spread(mut left: Vec<Vec3>, apart: f32, most: usize, size: impl Fn
     chosen
 }
 
-/// Moves the end of a limb to a position, in the axes of `model`. A moved limb slows down before it is straight, so that
-/// its middle joint does not snap.
+/// Moves the end of a limb to a position in the space of `model`. Before the limb becomes straight, its end falls short
+/// of the position, so that the middle joint does not snap.
 fn put(
     rig: &Rig,
     bones: TwoBone,
@@ -496,7 +503,7 @@ fn raise_middle(
     }
 }
 
-/// Sets a joint's rotation in the axes of `model`, with its descendants.
+/// Sets a joint's rotation in the axes of `model`; its descendants rotate with it.
 fn turn_to(
     rig: &Rig,
     joint: JointIdx,
@@ -552,7 +559,8 @@ fn part_of_stiff(def: &RagdollDef, arms: &[StiffArm], body: usize) -> Option<usi
     bearers.find_map(|body| arms.iter().find(|arm| def.bodies[body].joint == arm.shoulder).map(|arm| arm.end))
 }
 
-/// Returns the part of a skin point, in model space of the bind pose; `None` for tails and other points without a part.
+/// Returns the part to which a skin point belongs; the point is in model space of the bind pose. `None` for tails and
+/// other points without a part.
 fn part_of(
     def: &RagdollDef,
     limbs: &[LimbChain],
@@ -605,8 +613,8 @@ fn hangs(rig: &Rig, joint: JointIdx, above: JointIdx) -> bool {
     core::iter::successors(Some(joint), |&i| rig.joints[i].parent).any(|i| i == above)
 }
 
-/// Returns joints that are not descendants of the joint that carries their body, topmost ones only, each with this
-/// joint.
+/// Returns the joints that are not descendants of the joint that carries their body, each with that joint; of a subtree
+/// only the topmost joint.
 fn strays(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, JointIdx)> {
     let hangs = |joint: JointIdx, above: JointIdx| hangs(rig, joint, above);
     let of_bodies = def.joints.iter().filter_map(|joint| {
@@ -619,11 +627,11 @@ fn strays(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, JointIdx)> {
         let parent = rig.joints[joint].parent.and_then(|parent| carried[parent]);
         (!hangs(joint, carrier) && parent != carried[joint]).then_some((joint, carrier))
     });
-    // A joint that carries its own carrier follows nothing.
+    // Skip a joint that is an ancestor of its carrier, because it cannot follow its own descendant.
     of_bodies.chain(of_joints).filter(|&(joint, carrier)| !hangs(carrier, joint)).collect()
 }
 
-/// Returns the directions to sides, edges and corners of a box.
+/// Returns the directions from the centre of a box to its faces, edges and corners.
 fn directions() -> impl Iterator<Item = Vec3> {
     let steps = [-1.0_f32, 0.0, 1.0];
     let all = steps.into_iter().flat_map(move |x| steps.into_iter().map(move |y| (x, y)));
@@ -648,7 +656,7 @@ impl Sole<'_> {
 }
 
 impl CharacterDef {
-    /// Returns the feet that can stand.
+    /// Returns the soles of the feet on which the character can stand.
     pub(crate) fn soles(&self) -> Vec<Sole<'_>> {
         let legs = self.clearance.limbs.iter().filter(|limb| FEET.contains(&limb.end));
         let sole = |limb: &LimbChain| {
@@ -659,14 +667,14 @@ impl CharacterDef {
         legs.map(sole).collect()
     }
 
-    /// Returns the depth of the lowest point of the drawn skin, with props, in the floor over a motion of its rig,
-    /// metres; at least 0, and 0 for a rig without skin.
+    /// Returns the largest depth of the drawn skin, including props, in the floor over all frames of a take of this
+    /// rig, metres; at least 0, and 0 for a rig without skin.
     pub fn deepest_skin(&self, take: &Take) -> f32 {
         self.clearance.deepest(self, take).into_iter().fold(0.0, max)
     }
 
-    /// Returns the depth in the floor of the lowest drawn point of trunk, head and legs down to the knees in a pose,
-    /// metres; negative above the floor, `None` for a rig without skin.
+    /// Returns the depth in the floor of the lowest drawn point of trunk, head and thighs, down to the knees, in a
+    /// pose, metres; negative above the floor, `None` for a rig without skin.
     pub fn trunk_depth(&self, pose: &[LocalTransform]) -> Option<f32> {
         let mut model = Vec::new();
         local_to_model(&self.rig, pose, &self.mapping().character_from_model(), &mut model);
@@ -674,8 +682,8 @@ impl CharacterDef {
         depth.is_finite().then_some(depth)
     }
 
-    /// Raises feet, hands and elbows whose drawn skin is in the floor of a pose, by bending their limbs. If a hand
-    /// holds too long an object for that, the hand rotates about its wrist. The pose has a local transform per joint of
+    /// Raises feet, hands and elbows whose drawn skin is in the floor, by bending their limbs. If a hand holds an
+    /// object that is too long for that, the hand rotates about its wrist. `pose` has one local transform per joint of
     /// the rig.
     pub fn raise_limbs(&self, pose: &mut [LocalTransform]) {
         if !self.clearance.parts.is_empty() {

@@ -1,4 +1,4 @@
-//! Detached limbs: the new bodies, and the remaining ones.
+//! Detaching a limb: the limb's bodies in the world, and the character's remaining bodies.
 
 use super::CharacterDef;
 use super::limb::{cut_joint, shrunk};
@@ -33,7 +33,7 @@ impl Physique {
         (0..def.rig.joints.len()).filter(is_lost).collect()
     }
 
-    /// Returns true if the character still has all parts that it needs to stand.
+    /// Returns true if no part without which the character cannot stand was detached.
     pub fn may_get_up(&self, def: &CharacterDef) -> bool {
         self.lost.iter().all(|&(body, _)| {
             let role = &def.ragdoll.bodies[body].role;
@@ -58,8 +58,8 @@ impl Physique {
         (parts.iter().map(|&part| ragdoll.bodies[part]).collect(), joints)
     }
 
-    /// Makes a limb of kinematic or absent bodies dynamic, at the velocities of `states`, and returns its bodies and
-    /// joints.
+    /// Turns a limb whose bodies are kinematic or not in the world into dynamic bodies with the velocities of `states`,
+    /// and returns its bodies and joints.
     pub fn cut_led(
         &self,
         def: &CharacterDef,
@@ -85,7 +85,7 @@ impl Physique {
         (bodies, parts[1..].iter().map(|&part| ragdoll.joints[part - 1]).collect())
     }
 
-    /// Records the parts of detached bodies.
+    /// Records the bodies with the indices `parts` as detached.
     pub fn lose(&mut self, parts: &[usize], bodies: &[BodyId]) {
         self.lost.extend(parts.iter().copied().zip(bodies.iter().copied()));
         self.lost.sort_unstable_by_key(|&(part, _)| part);

@@ -125,7 +125,7 @@ impl CharacterEvent {
             Self::Preparing { rolls } => (15, [u64::from(rolls), 0]),
             Self::GettingUp { clip } => (16, [clip.map_or(0, |clip| clip as u64 + 1), 0]),
             Self::Up => (17, [0; 2]),
-            Self::Clip(_) => unreachable!("an update tells of it"),
+            Self::Clip(_) => unreachable!("the update in which a clip's event occurs reports it"),
         };
         w.u8(tag);
         numbers.into_iter().for_each(|number| w.u64(number));
@@ -153,7 +153,7 @@ impl CharacterEvent {
             15 => Self::Preparing { rolls: first != 0 },
             16 => Self::GettingUp { clip: first.checked_sub(1).map(|clip| clip as usize) },
             17 => Self::Up,
-            _ => return Err(r.error("tells of an unknown event")),
+            _ => return Err(r.error("unknown event of a character")),
         })
     }
 }

@@ -1,8 +1,8 @@
-//! Keeps feet on the ground while a character gets up on ground that differs from its clip's floor. Without it both
-//! feet would be at the height of the lower step across the edge of a stair.
+//! Keeps feet on the ground while a character gets up on ground that differs from its clip's floor. Otherwise, across
+//! the edge of a stair, both feet would be at the height of the lower step.
 //!
-//! The state is the height of the ground under each foot over the clip's floor. It follows the world like a critically
-//! damped spring, so that an edge below a moving foot causes no jump.
+//! The state is the height of the ground under each foot above the clip's floor. It follows the measured height like a
+//! critically damped spring, so that an edge below a moving foot causes no jump.
 
 use super::activity::Activity;
 use super::clearance::{Depths, PARTS, Passage, larger};
@@ -17,7 +17,7 @@ use sinew_anim::{Animator, LocalTransform, local_to_model, smoothstep};
 use sinew_math::{Affine, Transform, Vec3, max};
 use sinew_physics::{BodyId, World};
 
-/// Depths of the shown pose, at least 0, and its ankles in the world.
+/// Depths of the body parts in the ground in the shown pose, at least 0, and the transforms of its ankles in the world.
 pub(super) type Depth = (Depths, [Transform; 2]);
 
 /// Planted feet of a character, and clearance of its skin.
@@ -25,17 +25,17 @@ pub(super) type Depth = (Depths, [Transform; 2]);
 pub(super) struct Feet {
     /// Ground under the character's feet, where it differs from the floor of its clips.
     pub planting: Planting,
-    /// Feet of a walking character; `None` while it gets up, lies, or only follows its clips.
+    /// Feet of a character that walks, stands or is powered; `None` while it gets up, lies, or only follows its clips.
     pub treads: Option<Treads>,
     /// Transition during which the character is kept out of the floor.
     pub passage: Passage,
     /// Displacements of trunk, feet and hands out of walls.
     pub walls: WallOffsets,
-    /// Pose of the clips with planted feet, clear of floor and walls; empty if that equals the clips' pose.
+    /// Pose of the clips with planted feet, clear of floor and walls; empty if it equals the clips' pose.
     pub pose: Vec<LocalTransform>,
 }
 
-/// Inputs for the feet.
+/// State of a character from which its feet are placed.
 #[derive(Clone, Copy)]
 pub(super) struct Stand<'a> {
     pub def: &'a CharacterDef,
@@ -44,7 +44,7 @@ pub(super) struct Stand<'a> {
     pub figure: &'a Figure,
     /// Speed of the character over the ground, m/s.
     pub speed: f32,
-    /// Displacement of the character up its ground in the last step, metres.
+    /// Height by which the ground raised the character in the last step, metres.
     pub lifted: f32,
     /// True if the character jumps or falls.
     pub aloft: bool,
@@ -60,20 +60,20 @@ impl Feet {
         !self.planting.is_over() || self.is_passing() || self.are_astray() || !self.walls.are_zero()
     }
 
-    /// Returns true while a foot is displaced from the clips' foot.
+    /// Returns true while a foot or the pelvis is displaced from its position in the clips.
     fn are_astray(&self) -> bool {
         self.treads.is_some_and(|treads| {
             treads.lowering > 0.0 || treads.feet.iter().any(|tread| tread.offset != Vec3::ZERO)
         })
     }
 
-    /// Returns the pose of clips or bodies, with feet on the ground and out of the floor.
+    /// Returns the pose with planted feet and clear of the floor, or `pose` if the two are equal.
     pub fn led<'a>(&'a self, pose: &'a [LocalTransform]) -> &'a [LocalTransform] {
         if self.pose.is_empty() { pose } else { &self.pose }
     }
 
-    /// Plants the feet of a character that gets up, or has got up and still stands there. The feet of a walking
-    /// character return to the clips.
+    /// Plants the feet for this step and computes the shown pose. Without planting on the ground, only the feet of a
+    /// character that gets up, or has got up and still stands there, are planted.
     pub fn plant(&mut self, stand: &Stand<'_>, world: &World, model: &mut Vec<Affine>) {
         self.go_on_passing(stand.activity.state(), world.def().dt());
         if self.is_passing() {
@@ -162,8 +162,8 @@ impl Feet {
         lowering
     }
 
-    /// Moves a pose of the clips to the planted feet after `later` seconds more, for a character that will be at
-    /// `place`. Returns the lowering of the pelvis, metres.
+    /// Moves the feet of a pose of the clips to where they will be planted in `later` seconds, when the character will
+    /// be at `place`. Returns the lowering of the pelvis, metres.
     pub fn place(
         &self,
         def: &CharacterDef,
@@ -191,7 +191,7 @@ impl Feet {
         self.bring_home(def, offsets, (place, later), pose, model)
     }
 
-    /// Returns the depths in the ground of the shown pose, and its ankles.
+    /// Returns the depths of the shown pose in the ground, and its ankles in the world.
     pub fn shown_depths(
         &self,
         def: &CharacterDef,
@@ -208,7 +208,8 @@ impl Feet {
         (depths, [0, 1].map(ankle))
     }
 
-    /// Starts a transition of `seconds` to a pose no deeper than `to`, from the shown pose.
+    /// Starts a transition of `seconds` from a pose with the depths and ankles given first to a pose with the depths
+    /// `to`.
     pub fn pass(&mut self, def: &CharacterDef, (from, ankles): Depth, to: Depths, seconds: f32) {
         self.passage = match def.ground_contact {
             GroundContact::Enforced => Passage { from, to, ankles, seconds, ..Passage::default() },
@@ -216,7 +217,8 @@ impl Feet {
         };
     }
 
-    /// Sets `to` as the target of the new transition. Feet whose targets are far from `bodies` are lifted immediately.
+    /// Sets for each foot the horizontal distance between its body's position in `bodies` and its target, the position
+    /// in `to` moved by `motion`. The distance determines how high the foot steps.
     pub fn pass_to(&mut self, def: &CharacterDef, bodies: &[Transform], motion: Transform, to: &[Transform]) {
         if !self.is_passing() {
             return;
@@ -247,7 +249,7 @@ impl Feet {
         self.passage != Passage::default()
     }
 
-    /// Raises a pose of the clips out of the floor, as it will be after `later` seconds more.
+    /// Raises a pose of the clips, for a time `later` seconds from now, out of the floor.
     pub fn clear_floor(
         &self,
         def: &CharacterDef,
@@ -268,8 +270,8 @@ impl Feet {
 }
 
 impl Stand<'_> {
-    /// Returns the ground under each foot over the clip's floor: on a slope the ground under the heel, with the tilt;
-    /// across an edge the higher ground of heel and ball.
+    /// Returns the ground under each foot above the clip's floor: on a slope the height under the heel, and the slope;
+    /// across an edge the larger of the heights under heel and ball, without a slope.
     fn needed(&self, world: &World, legs: &Legs, model: &mut Vec<Affine>) -> [Need; 2] {
         let root = self.def.mapping().character_from_model();
         local_to_model(&self.def.rig, &self.figure.pose, &root, model);

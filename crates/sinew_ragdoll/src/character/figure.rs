@@ -1,4 +1,4 @@
-//! Pose and transform of a character: now, one step ago, and as shown.
+//! Pose and transform of a character: the present ones, those one step ago, and the shown ones.
 
 use super::CharacterDef;
 use super::pose_similarity::Stance;
@@ -16,7 +16,7 @@ pub(super) struct Moment {
 /// Pose and transform of a character.
 #[derive(Clone, Debug)]
 pub(super) struct Figure {
-    /// Pose of bodies or clips, without planted feet, springs and garments.
+    /// Pose from bodies or clips, without planted feet, springs and garments.
     pub pose: Vec<LocalTransform>,
     /// Transform from the character to the world.
     pub place: Transform,
@@ -72,7 +72,8 @@ impl Figure {
         landmarks.stance(def.mapping(), &scratch.model, self.place, points, &mut scratch.before)
     }
 
-    /// Computes pose and transform between the last shown (`alpha` 0) and `now` (1).
+    /// Computes in `pose` the pose between the last shown pose (`alpha` 0) and `now` (1), and returns the transform
+    /// between the last shown one and the present one.
     pub fn between(&self, now: &[LocalTransform], alpha: f32, pose: &mut Vec<LocalTransform>) -> Transform {
         pose.clear();
         let (from, to) = (self.shown.place, self.place);
@@ -96,8 +97,8 @@ impl Figure {
 /// Buffers for reuse; except for `posed` they hold no data between calls.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
-    /// Bodies from which the present pose was computed, a cache while they do not move; otherwise empty. The cache is
-    /// not state: the pose is the same without it.
+    /// Poses of the bodies from which the present pose was computed, or empty. While these do not change, the pose need
+    /// not be computed again. This is a cache and not state: the results are the same without it.
     pub posed: Vec<Transform>,
     pub ahead: Option<Animator>,
     pub pose: Vec<LocalTransform>,
@@ -144,7 +145,7 @@ impl Scratch {
         }
     }
 
-    /// Copies an animator into the copy of the last call, and returns this copy; return it to `ahead` afterwards.
+    /// Returns a copy of an animator that reuses the buffers in `ahead`. Store the copy in `ahead` after use.
     pub fn sent_ahead(&mut self, animator: &Animator) -> Animator {
         match self.ahead.take() {
             Some(mut ahead) => {

@@ -9,12 +9,13 @@ use sinew_anim::take::Take;
 use sinew_anim::{Channel, Clip, Interpolation, LocalTransform, Property, Rig, local_to_model};
 use sinew_math::{Affine, Vec3, min};
 
-/// Number of evenly spread poses of a looped clip that are examined.
+/// Number of evenly spaced poses of a looped clip in which its lowest point is measured.
 const LOOKS: usize = 24;
-/// Words in names of clips in the air or in water, whose lowest point is not on a floor.
+/// Words in the names of clips in the air or in water. The lowest point of such a clip is not on a floor.
 const ALOFT: [&str; 7] = ["fly", "flies", "hover", "swim", "float", "glide", "jump"];
 
-/// Heights by which clips are raised to the floor of the rest pose, metres: the looped clip, and get-ups by clip.
+/// Heights by which clips are raised to the floor of the rest pose, metres: that of the looped clip, and that of each
+/// get-up clip with the clip's index.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Raised {
     pub looped: f32,
@@ -22,8 +23,8 @@ pub(super) struct Raised {
 }
 
 impl Raised {
-    /// Measures the clips. The floor of the looped clip is at its lowest drawn point, the floor of a get-up clip at the
-    /// lowest point of its end.
+    /// Measures the clips. The floor of the looped clip is at its lowest drawn point; the floor of a get-up clip is at
+    /// the lowest drawn point of its last pose.
     pub fn of(def: &CharacterDef, motions: &MotionSet) -> Self {
         let mut surface = Surface::of(&def.rig, &def.ragdoll);
         let may_stand = may_stand(&def.ragdoll);
@@ -51,14 +52,16 @@ impl Raised {
         let looped = looped.map_or(0.0, |index| {
             let clip = &motions.clips[index];
             let raised = raise(low(clip, 0));
-            // Without legs, or in the air, a clip has no floor; only parts below the floor are raised.
+            // The lowest point of a character without legs, or of a clip in the air, need not be on the floor. Such a
+            // clip is raised if it is below the floor, but never lowered.
             if raised < 0.0 && (!has_legs || is_aloft(&clip.name)) { 0.0 } else { raised }
         });
         let get_ups = motions.get_ups.iter().map(|&clip| (clip, raise(low(&motions.clips[clip], LOOKS))));
         Self { looped, get_ups: get_ups.collect() }
     }
 
-    /// Returns the height by which a clip is raised; for a clip that is not a get-up, that of the looped clip.
+    /// Returns the height by which a clip is raised, metres; for a clip that is not a get-up, the height of the looped
+    /// clip.
     pub fn of_clip(&self, index: usize) -> f32 {
         self.get_ups.iter().find(|(clip, _)| *clip == index).map_or(self.looped, |(_, raised)| *raised)
     }
@@ -79,8 +82,8 @@ fn lowest(def: &CharacterDef, surface: &Surface, pose: &[LocalTransform]) -> f32
     heights.fold(f32::INFINITY, min)
 }
 
-/// Returns a clip with all rig roots that carry the character moved by `by`, and the others, such as a floor in the
-/// file, by `beside`; model space.
+/// Returns a clip whose rig roots are moved in model space: by `by` if they carry the character, otherwise, such as a
+/// floor in the file, by `beside`.
 pub(crate) fn moved(rig: &Rig, ragdoll: &RagdollDef, clip: &Clip, by: Vec3, beside: Vec3) -> Clip {
     let mut moved = clip.clone();
     let carries = carries_character(rig, ragdoll);

@@ -1,5 +1,5 @@
-//! Keeps the bodies of feet above the lowest point of their drawn skin. Toes bend, but the body of their foot does not:
-//! its front would be in the ground whenever the heel is up.
+//! Keeps the bodies of feet no lower than their drawn skin. Toes bend, but the body of their foot is rigid, so its
+//! front would be in the ground whenever the heel is up.
 
 use super::clearance::{outermost, part_without_repeats};
 use crate::character::tuning::{BODY_BELOW_SKIN, UPSIDE_DOWN};
@@ -10,7 +10,7 @@ use sinew_anim::{Rig, smoothstep};
 use sinew_math::trig::atan2;
 use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
 
-/// Number of bisections of [`flat_angle`](FootBody::flat_angle): about a milliradian.
+/// Number of bisections between 0 and [`flat_angle`](FootBody::flat_angle): they leave about a milliradian.
 const BISECTIONS: usize = 11;
 
 /// The body of a foot.
@@ -53,7 +53,8 @@ impl FootBodies {
         self.0.is_empty()
     }
 
-    /// Rotates the feet about their ankles until they are no lower than the drawn skin of `model`, in world space.
+    /// Rotates the bodies of the feet about their ankles until they are no lower than the skin drawn in the pose
+    /// `model`, in world space.
     pub fn raise(&self, def: &RagdollDef, model: &[Affine], bodies: &mut [Transform]) {
         let mut palette = Vec::new();
         for foot in &self.0 {
@@ -65,8 +66,8 @@ impl FootBodies {
 }
 
 impl FootBody {
-    /// Rotates the body about its joint, at most until the foot is flat, until its shape is no lower than `least`,
-    /// metres.
+    /// Rotates the body about its joint until its shape is no lower than the height `least` (metres), or until the foot
+    /// is flat.
     fn raise(&self, def: &RagdollDef, least: f32, world_from_body: &mut Transform) {
         let shape = &def.bodies[self.body].shape;
         let joint = def.joints[self.body - 1].frame_child.translation;

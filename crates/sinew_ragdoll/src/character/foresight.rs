@@ -14,7 +14,7 @@ use sinew_anim::Animator;
 use sinew_math::{Transform, Vec3};
 use sinew_physics::Velocity;
 
-/// The parts that determine how a pose continues.
+/// The state that determines the poses of the next step.
 #[derive(Clone, Copy)]
 pub(super) struct Foresight<'a> {
     pub def: &'a CharacterDef,
@@ -23,13 +23,13 @@ pub(super) struct Foresight<'a> {
     pub figure: &'a Figure,
     pub feet: &'a Feet,
     pub stumble: Option<&'a Stumble>,
-    /// True if clips will move the bodies: feet are then no lower than their drawn skin.
+    /// True if clips will move the bodies; the bodies of feet are then no lower than the drawn skin.
     pub leads: bool,
 }
 
 impl Foresight<'_> {
-    /// Returns the poses of the bodies from an animator that is advanced by `seconds`, relative to the character's
-    /// present transform. `place` is the transform to which the animator has moved the character until then.
+    /// Advances an animator by `seconds` and returns the poses of the bodies relative to the character's present
+    /// transform. `place` is the transform to which the animator has moved the character before this call.
     fn bodies(
         &self,
         ahead: &mut Animator,
@@ -57,24 +57,24 @@ impl Foresight<'_> {
         scratch.pose = pose;
     }
 
-    /// Returns the poses and velocities of the bodies in the animation, from its pose shortly afterwards, because
-    /// tracks, weights and transitions may have changed since the last pose.
+    /// Returns the poses and velocities of the bodies in the animation. The velocities come from poses shortly
+    /// afterwards, not from the last pose, because tracks, weights and transitions may have changed since.
     pub fn carried(&self, scratch: &mut Scratch) -> Vec<BodyState> {
         let (mut now, mut ahead) =
             (core::mem::take(&mut scratch.before), core::mem::take(&mut scratch.after));
-        // Compute relative to the character: far from the world's origin small displacements are lost in rounding.
+        // Compute relative to the character, because far from the world's origin rounding would remove small
+        // displacements.
         let pose = self.feet.led(&self.figure.pose);
         scratch.bodies_of(self.def, pose, Transform::IDENTITY, &mut now);
         let (mut animator, mut way) = (scratch.sent_ahead(&self.gait.animator), Transform::IDENTITY);
         let laps = laps(&animator);
-        // Velocities are those of the clips from the clips' present pose: the shown pose may come from bodies or
-        // stepping feet.
+        // Velocities start from the clips' present pose, because the shown pose may come from bodies or stepping feet.
         let (mut from, mut further) = (Vec::new(), Vec::new());
         self.bodies(&mut animator, &mut way, 0.0, scratch, &mut from);
         self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut ahead);
         self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut further);
         if self::laps(&animator) != laps {
-            // Poses may jump across a loop's seam, so the motion after the seam counts.
+            // Poses may jump across a loop's seam, so use only the motion after the seam.
             core::mem::swap(&mut from, &mut further);
             self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut ahead);
             self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut further);

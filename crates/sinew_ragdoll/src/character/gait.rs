@@ -21,38 +21,39 @@ pub(super) struct Gait {
     pub mover: Option<MoverId>,
     /// Requested velocity, m/s; `None`: root motion.
     pub wish: Option<Vec3>,
-    /// Direction that the character shall face, level, of length 1.
+    /// Horizontal direction toward which the character turns, of length 1; `None`: it does not turn.
     pub facing: Option<Vec3>,
-    /// The mover's rotation when last read.
+    /// Rotation of the mover about the vertical when it was last read, radians.
     pub yaw: f32,
     /// Velocity of the mover, m/s.
     pub velocity: Vec3,
-    /// Speed over the ground in the last step, m/s.
+    /// Horizontal speed of the character over the ground in the last step, m/s.
     pub speed: f32,
     /// Speed at which the ground raised the character's origin in the last step, m/s; 0 with a mover.
     pub climbing: f32,
-    /// Displacement of the character's origin up its ground in the last step, metres; 0 without a mover, and between
-    /// updates.
+    /// Height by which a step of the ground raised the character's origin in the last step, metres; 0 without a mover,
+    /// and between updates.
     pub lifted: f32,
     /// Speed at which the looped clip is played, m/s.
     pub pace: f32,
     /// Time since the mover last had ground, seconds.
     pub air: f32,
-    /// Offset from the mover to the shown position, metres: the character follows a step down, or a mover that was
-    /// pushed aside, with a delay.
+    /// Offset from the mover to the shown position, metres. It is not zero after a stair step and after a mover was
+    /// pushed aside, which the character follows with a delay.
     pub beside: Vec3,
-    /// Velocity by blasts and fields in addition to the walk, m/s; the feet brake it. Upward: on the way off the
-    /// ground.
+    /// Velocity by blasts and fields in addition to the walk, m/s; on the ground the feet brake it. An upward component
+    /// lifts the character off the ground.
     pub shoved: Vec3,
     /// Change of velocity by blasts and fields in the last step, m/s; zero between updates.
     pub blown: Vec3,
     /// Velocity at which the character follows a held limb, horizontal, m/s; zero between updates.
     pub pulled: Vec3,
-    /// True if the character was off the ground for too long, landed too fast, or, without a mover, went over an edge.
+    /// True if the character must fall: it was off the ground for too long, landed too fast, or, without a mover, went
+    /// over an edge.
     pub falls: bool,
 }
 
-/// Returns the motion of a character in the last update of an animator, in its own space.
+/// Returns the root motion of the last update of an animator, in character space.
 pub(super) fn root_step(def: &CharacterDef, animator: &Animator) -> Transform {
     let root = def.mapping().character_from_model();
     let turn = root.to_rigid().rotation;
@@ -98,7 +99,8 @@ impl Gait {
         figure.keep_earlier();
         figure.take(&self.animator);
         let step = root_step(def, &self.animator);
-        // Facing would swing a lying body about its feet, so the turning speed grows as the character rises.
+        // At full turning speed a lying body would swing about its feet, so the turning speed grows as the character
+        // rises.
         let most = if activity.state() == State::Powered { POWERED_TURNS } else { f32::INFINITY };
         let turns = min(def.in_world.turn_speed, most) * (1.0 - activity.lowness(def, &self.animator));
         let from = figure.place;
@@ -124,8 +126,8 @@ impl Gait {
         self.climbing = (to.translation.y - from.translation.y) / dt;
     }
 
-    /// Returns the transform after a step, by the mover, and records the mover's speeds. `turns`: largest turning
-    /// speed, rad/s.
+    /// Returns the character's transform after a step according to its mover, and records the mover's speeds. `turns`
+    /// is the largest turning speed, rad/s.
     fn ride(
         &mut self,
         def: &CharacterDef,
@@ -171,14 +173,14 @@ impl Gait {
             None if self.wish.is_some() => heading,
             None => heading * step.rotation,
         };
-        // The mover keeps its skin distance; the character stands on its soles.
+        // The mover floats above the ground by its skin distance; the character's soles are on the ground.
         let to = feet + self.beside - Vec3::Y * mover.def().skin;
         self.lifted += to.y;
         Some(Transform::new(to, rotation.normalize()))
     }
 
-    /// Sets the mover's motion for the next step, and lets it grow to its full height. `on_feet`: the mover accelerates
-    /// by its own feet.
+    /// Sets the mover's motion for the next step, and lets it grow to its full height as the character rises. If
+    /// `on_feet` is true, the acceleration is limited to that of the character's own feet.
     pub fn steer(
         &mut self,
         def: &CharacterDef,
@@ -200,7 +202,8 @@ impl Gait {
         }
     }
 
-    /// Adds the effects of blasts, fields and pulls to a walk: on the ground feet brake them, in the air nothing does.
+    /// Returns a walk with the velocities by blasts, fields and pulls added. Feet on the ground brake these velocities;
+    /// in the air nothing brakes them.
     fn be_shoved(&mut self, mover: MoverId, walk: Vec3, world: &mut World) -> Vec3 {
         let (blown, pulled) = (core::mem::take(&mut self.blown), core::mem::take(&mut self.pulled));
         if blown == Vec3::ZERO && self.shoved == Vec3::ZERO {
@@ -217,7 +220,7 @@ impl Gait {
                 world.set_mover_velocity(mover, velocity);
             }
             self.shoved.y = 0.0;
-            // In the air a mover without a wanted velocity keeps its velocity.
+            // In the air, a mover whose motion is zero keeps its velocity.
             return if walk == Vec3::ZERO { walk } else { walk + self.shoved };
         }
         let level = Vec3::new(self.shoved.x, 0.0, self.shoved.z);
@@ -226,7 +229,7 @@ impl Gait {
         walk + kept + pulled
     }
 
-    /// Returns [`wanted_walk`](Self::wanted_walk), limited by the acceleration of the character's own feet.
+    /// Returns [`wanted_walk`](Self::wanted_walk), limited by the largest acceleration of the character's own feet.
     fn reachable_walk(
         &self,
         def: &CharacterDef,
@@ -294,7 +297,7 @@ impl Gait {
         }
     }
 
-    /// Returns the track of a clip, started without weight if there is none.
+    /// Returns the track that plays a clip; starts one with the weight 0 if there is none.
     fn track_or_silent(&mut self, def: &CharacterDef, clip: ClipId, sync_group: Option<u8>) -> TrackId {
         self.track_of(clip).unwrap_or_else(|| {
             self.animator.play(def.set(), &TrackDef { weight: 0.0, sync_group, ..TrackDef::new(clip) })
@@ -326,8 +329,8 @@ impl Gait {
         self.animator.tracks().find(plays).map(sinew_anim::Track::id)
     }
 
-    /// Returns the transform after `seconds` more, relative to the character's present one: by its mover, or by its
-    /// clips.
+    /// Returns the predicted transform of the character in `seconds`, relative to its present one, according to its
+    /// mover or else to its clips.
     pub fn gone_on(
         &self,
         def: &CharacterDef,
@@ -348,7 +351,7 @@ impl Gait {
         place
     }
 
-    /// Adds a mover at the character's position, at a share of its full height.
+    /// Adds a mover at the position `place`, with the share `share` of its full height.
     pub fn stand_up(&mut self, def: &CharacterDef, place: Vec3, world: &mut World, share: f32) {
         let Some(mover) = def.in_world.mover.as_ref().filter(|_| self.mover.is_none()) else { return };
         let height = max(2.0 * mover.radius, share * mover.height);
@@ -369,8 +372,9 @@ impl Gait {
         self.air >= OFF_GROUND || self.air > 0.0 && self.velocity.y > LIFTS_OFF
     }
 
-    /// Follows a held limb that is drawn from its clip by `off` and moves at `velocity`. The speed is the limb's own
-    /// speed once `off` reaches the slack, and grows with the distance beyond the slack.
+    /// Sets the velocity at which the character follows a held limb that is away from its clip by `off` and moves at
+    /// `velocity`. The speed is the limb's own speed (a share of it while `off` is within the slack), plus a term that
+    /// grows with the distance beyond the slack.
     pub fn follow_pull(&mut self, off: Vec3, velocity: Vec3, height: f32) {
         let level = Vec3::new(off.x, 0.0, off.z);
         let way = normalize_or(level, Vec3::ZERO);
@@ -393,7 +397,7 @@ impl Gait {
         }
     }
 
-    /// Restarts at a new position.
+    /// Moves the mover to a new position and clears the velocities and the offset.
     pub fn teleport(&mut self, place: Vec3, world: &mut World) {
         (self.air, self.beside, self.velocity) = (0.0, Vec3::ZERO, Vec3::ZERO);
         self.clear_shoves();
@@ -404,7 +408,8 @@ impl Gait {
     }
 }
 
-/// Returns a rotation turned about the vertical so that +z moves toward a level direction, by at most an angle.
+/// Returns a rotation that is turned about the vertical by at most `most` radians, so that its +z points more toward
+/// the horizontal direction.
 fn turned_to(rotation: Rotation, direction: Vec3, most: f32) -> Rotation {
     let ahead = rotation * Vec3::Z;
     let angle = trig::atan2(

@@ -9,11 +9,11 @@ use sinew_anim::{Animator, TrackId, smoothstep};
 use sinew_math::{Rotation, Transform, Vec3};
 use sinew_physics::{BodyContact, BodyId, BodyKind, Effect, World};
 
-/// A rising character.
+/// A character that gets up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rising {
     pub way: Way,
-    /// Slope of the ground: rotation from the vertical to its normal, scaled axis, world axes.
+    /// Slope of the ground: rotation from the vertical to the ground's normal, as a scaled axis in world axes.
     pub lean: Vec3,
 }
 
@@ -22,18 +22,18 @@ pub(super) struct Rising {
 pub(super) enum Way {
     /// The track plays a get-up clip.
     ByClip(TrackId),
-    /// The looped clip alone plays, for this many seconds more.
+    /// Only the looped clip plays. The get-up lasts for this many more seconds.
     Without(f32),
 }
 
-/// Outcome of a step of rising.
+/// Outcome of a step of a get-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Risen {
     /// The get-up continues.
     NotYet,
     /// The get-up clip is over.
     ByClip,
-    /// The time without a clip is over.
+    /// The get-up without a clip is over.
     Without,
 }
 
@@ -58,8 +58,8 @@ impl Rising {
         matches!(self.way, Way::Without(_))
     }
 
-    /// Tilts the transform by the slope while the character lies, and makes it upright toward the end, because clips
-    /// are made for a level floor.
+    /// Tilts the transform by the slope while the character lies, because clips are made for a level floor, and makes
+    /// it upright toward the end.
     pub fn straighten(&self, def: &CharacterDef, animator: &Animator, figure: &mut Figure) {
         if self.lean == Vec3::ZERO {
             return;
@@ -94,8 +94,8 @@ pub(super) struct Choice<'a> {
     pub pose_similarity: PoseSimilarity,
 }
 
-/// Returns the best of all clips and clip times for a body in this pose; `None` without clips, or for a body that stands
-/// in nearly the pose of its looped clip, which needs no get-up.
+/// Returns the get-up clip and start time that fit the stance `lies` best. Returns `None` if there are no clips, or if
+/// the character stands in nearly the pose of its looped clip and needs no get-up.
 pub(super) fn choose<'a>(def: &'a CharacterDef, lies: &Stance) -> Option<Choice<'a>> {
     let moves = def.moves();
     let all = moves.get_ups.iter().flat_map(|get_up| get_up.starts.iter().map(move |start| (get_up, start)));
@@ -112,8 +112,8 @@ pub(super) fn choose<'a>(def: &'a CharacterDef, lies: &Stance) -> Option<Choice<
     (!stands || best.pose_similarity.distance < upright.distance).then_some(best)
 }
 
-/// Returns the transform of a character tilted by `lean`, at the height at which its floor is at `ground` under the
-/// pelvis.
+/// Returns the transform `place` tilted by `lean`, at the height at which the character's floor is at the height
+/// `ground` under the pelvis.
 pub(super) fn standing(place: Transform, lean: Vec3, pelvis: Vec3, ground: f32) -> Transform {
     let mut to = Transform::new(place.translation, Rotation::from_scaled_axis(lean) * place.rotation);
     let normal = Rotation::from_scaled_axis(lean) * Vec3::Y;
@@ -134,10 +134,10 @@ pub(super) fn is_taken(def: &CharacterDef, world: &World, place: Vec3) -> bool {
     })
 }
 
-/// Returns true if a movable body is on the character and the character has not waited too long: a kinematic body that
-/// stands on it, or dynamic bodies whose load exceeds that of the character on others. These net loads of characters in
-/// a pile sum to zero, so at least one character is always free. `steps`: number of steps for which the character has
-/// lain.
+/// Returns true if the character must wait because a kinematic body stands on it, or because the load of dynamic bodies
+/// on it exceeds its own load on them. Returns false once it has waited for [`BEARS_FOR`]. The net loads of the
+/// characters in a pile sum to zero, so at least one of them is always free. `steps` is the number of steps for which
+/// the character has lain.
 pub(super) fn is_under(def: &CharacterDef, own: &[BodyId], steps: u32, world: &World) -> bool {
     let dt = world.def().dt();
     if steps as f32 * dt > BEARS_FOR {

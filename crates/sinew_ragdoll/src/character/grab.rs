@@ -1,5 +1,5 @@
-//! Grips on limbs and other dynamic bodies. A grip holds the touched point with bounded force, and releases it beyond
-//! this force.
+//! Grips on limbs and other dynamic bodies. A grip holds the touched point with bounded force, and releases it if this
+//! force does not suffice.
 
 use super::grasp::{Grab, Grasp};
 use super::hold::{Grips, Hold};
@@ -59,14 +59,14 @@ impl Grips {
         own.iter().find(|body| is_held(body)).and_then(|&body| physique.index_of(body))
     }
 
-    /// Returns true for a body that is held or released, or connected to such a body; the character's own bodies pass
-    /// through it.
+    /// Returns true if the character's own bodies pass through a body: it is held or was released, or is connected to
+    /// such a body.
     pub fn passes_through(&self, world: &World, body: BodyId) -> bool {
         let mut all = self.held().chain(self.freed.iter().copied()).filter(|&held| world.contains(held));
         all.any(|held| held == body || together(world, held).contains(&body))
     }
 
-    /// Enables collision with released bodies once they have separated.
+    /// Enables collision with released bodies that have separated from the character's own bodies.
     pub fn mind_freed(&mut self, own: &[BodyId], world: &mut World) {
         if self.freed.is_empty() {
             return;
@@ -91,7 +91,7 @@ impl Grips {
         self.freed = freed;
     }
 
-    /// Pulls all grips through the next step; returns the body that one of them releases.
+    /// Sets the motors of all grips for the next step; returns the first body that a grip releases.
     pub(super) fn pull(&mut self, world: &mut World) -> Option<BodyId> {
         for hold in &mut self.holds {
             if let Some(grasp) = &mut hold.grasp
@@ -104,14 +104,14 @@ impl Grips {
     }
 }
 
-/// Returns the other body of a joint.
+/// Returns the body of a joint that is not `body`.
 fn across(world: &World, joint: JointId, body: BodyId) -> BodyId {
     let (a, b) = world.joint_bodies(joint);
     if a == body { b } else { a }
 }
 
-/// Returns true for a body that is not dynamic or belongs to another character, and for a body connected to one of
-/// these by joints, like the hook of a crane. `own`: bodies through which the search does not go.
+/// Returns true for a body that is not dynamic or belongs to another character, and for a body that joints connect to
+/// one of these, like the hook of a crane. The search does not continue through the bodies `own`.
 fn is_anchored(world: &World, body: BodyId, own: &[BodyId]) -> bool {
     let (mut found, mut next) = (vec![body], 0);
     while let Some(&body) = found.get(next) {

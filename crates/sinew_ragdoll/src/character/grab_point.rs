@@ -1,4 +1,4 @@
-//! A point that grabs, for example of a mouse or a crane.
+//! A point that holds and drags a body, for example the pointer of a mouse or the hook of a crane.
 
 use super::grasp::{Grab, Grasp};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
@@ -8,8 +8,8 @@ use sinew_physics::{BodyDef, BodyId, BodyKind, JointId, World};
 const MAGIC: &[u8; 8] = b"sinew-g\x01";
 
 /// A point of the world that holds a body, such as a limb, and drags it: for instance a mouse. The point moves at
-/// [`Grab::speed`], and stays ahead of its body by at most the stretch at full force, so that jumps of the target throw
-/// no body.
+/// [`Grab::speed`], and stays ahead of its body by at most the stretch at which the grip pulls with its full force, so
+/// that a jump of the target does not throw the body.
 ///
 /// ```
 /// use sinew_math::{Transform, Vec3};
@@ -40,7 +40,7 @@ pub struct GrabPoint {
     ground: BodyId,
     joint: JointId,
     held: BodyId,
-    /// Grab point, world.
+    /// Point at which the body was grabbed, world.
     origin: Vec3,
     grasp: Grasp,
 }
@@ -80,7 +80,7 @@ impl GrabPoint {
         self.origin + self.grasp.goal
     }
 
-    /// Returns the body that the point holds, or held.
+    /// Returns the body that the point holds, or has held until it released the body.
     pub fn held(&self) -> BodyId {
         self.held
     }
@@ -90,8 +90,8 @@ impl GrabPoint {
         self.joint
     }
 
-    /// Pulls through the next step; call it before each step. Returns false once the point holds nothing: the body was
-    /// removed, or is further from the target than [`Grab::slip`].
+    /// Sets the pull for the next step; call it before each step. Returns false once the point holds nothing, because
+    /// the body was removed or is further from the target than [`Grab::slip`].
     pub fn update(&mut self, world: &mut World) -> bool {
         let is_there = world.contains_joint(self.joint) && world.contains(self.held);
         if is_there && self.grasp.pull(world, self.joint, true) {
@@ -128,12 +128,12 @@ impl GrabPoint {
     /// If the bytes are not a saved point of this version.
     pub fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
-            return Err(r.error("is not a point that grabs of this version"));
+            return Err(r.error("these bytes are not a grab point saved by this version"));
         }
         let (ground, joint) = (BodyId::from_bits(r.u64()?), JointId::from_bits(r.u64()?));
         let (held, origin) = (BodyId::from_bits(r.u64()?), r.vec3()?);
         if !origin.is_finite() {
-            return Err(r.error("a grip whose numbers make no sense"));
+            return Err(r.error("invalid settings of a grip"));
         }
         Ok(Self { ground, joint, held, origin, grasp: Grasp::load(r)? })
     }

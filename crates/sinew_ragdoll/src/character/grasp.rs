@@ -30,7 +30,8 @@ impl Grab {
     /// Grip of a hand.
     pub const HAND: Self =
         Self { max_force: 1300.0, reach: 0.25, slip: 0.4, to: None, speed: 1.0, drops: true };
-    /// Grip for a point moved by a person, such as a mouse: at most 2.5 m/s; it never releases the body by itself.
+    /// Grip for a point that a person moves, for instance with a mouse: at most 2.5 m/s. It never releases the body by
+    /// itself.
     pub const POINT: Self = Self { slip: f32::INFINITY, speed: 2.5, ..Self::HAND };
 
     /// # Panics
@@ -38,11 +39,15 @@ impl Grab {
     #[track_caller]
     pub(super) fn check(&self) {
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
-        assert!(positive(self.max_force), "a grip's force is positive and finite, not {}", self.max_force);
-        assert!(positive(self.speed), "a grip's speed is positive and finite, not {}", self.speed);
-        assert!(self.reach >= 0.0, "a grip's reach is not negative, not {}", self.reach);
-        assert!(self.slip > 0.0, "a grip's slip is positive, not {}", self.slip);
-        assert!(self.to.is_none_or(Vec3::is_finite), "a grip draws to a finite point, not {:?}", self.to);
+        assert!(
+            positive(self.max_force),
+            "`Grab::max_force` must be positive and finite, not {}",
+            self.max_force
+        );
+        assert!(positive(self.speed), "`Grab::speed` must be positive and finite, not {}", self.speed);
+        assert!(self.reach >= 0.0, "`Grab::reach` must be at least 0, not {}", self.reach);
+        assert!(self.slip > 0.0, "`Grab::slip` must be positive, not {}", self.slip);
+        assert!(self.to.is_none_or(Vec3::is_finite), "`Grab::to` must be finite, not {:?}", self.to);
     }
 }
 
@@ -55,10 +60,10 @@ impl Default for Grab {
 /// An active grip. Points are relative to the anchor on the hand, in the axes of the hand's body, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Grasp {
-    /// Target of the hold.
+    /// Target to which the held point is pulled.
     pub goal: Vec3,
-    /// Offset from the target to the currently held point, world axes. A body pulled from afar does not rotate with the
-    /// hand.
+    /// Offset from the target to the point at which the motor currently holds the body. It shrinks to zero while the
+    /// body is pulled to the hand.
     pub off: Vec3,
     /// Anchors on the hand's body and on the held body, in their frames.
     anchors: [Vec3; 2],
@@ -103,8 +108,8 @@ impl Grasp {
         (grasp, joint)
     }
 
-    /// Pulls through the next step; returns false if the grip releases the body. `leads`: the target stays near the
-    /// held point instead of dragging it from afar.
+    /// Sets the motor for the next step; returns false if the grip releases the body. If `leads` is true, the target
+    /// stays near the held point instead of dragging it from afar.
     pub fn pull(&mut self, world: &mut World, joint: JointId, leads: bool) -> bool {
         let (dt, def) = (world.def().dt(), world.joint(joint));
         let held = def.frame_a.rotation * world.joint_transform(joint).translation;
@@ -126,7 +131,8 @@ impl Grasp {
         true
     }
 
-    /// Sets another target, relative to the anchor on a hand that is not rotated.
+    /// Sets another target, relative to the anchor on a hand that is not rotated; the currently held point does not
+    /// move.
     pub fn lead(&mut self, goal: Vec3) {
         self.off += self.goal - goal;
         self.goal = goal;
@@ -134,8 +140,8 @@ impl Grasp {
 
     /// Returns the joint that pulls the held point; `velocity` is the velocity of the target.
     ///
-    /// Each axis has its own largest force. The axes are symmetric about the pull, so that together they give the full
-    /// force along it, and no more in any direction.
+    /// The motor limits the force along each of its three axes. The pull makes equal angles with the axes, so that
+    /// their limits together give the full force along the pull, and no more in any other direction.
     fn pulling(&self, def: &JointDef, at: Vec3, held: Vec3, velocity: Vec3) -> JointDef {
         let (gap, third) = (at - held, (1.0_f32 / 3.0).sqrt());
         let (about, mut turn) = (Vec3::splat(third), def.frame_a.rotation);
@@ -174,13 +180,13 @@ impl Grasp {
         let damps = (0.0..f32::INFINITY).contains(&damping);
         let numbers = positive(max_force) && positive(speed) && damps;
         if !(numbers && slip > 0.0 && [goal, off, anchors[0], anchors[1]].into_iter().all(Vec3::is_finite)) {
-            return Err(r.error("a grip whose numbers make no sense"));
+            return Err(r.error("invalid settings of a grip"));
         }
         Ok(Self { goal, off, anchors, max_force, slip, speed, damping })
     }
 }
 
-/// Returns the point nearest to `at` to which a grip stretches at its full force.
+/// Returns `at`, or the point toward it at the distance from `held` at which the grip pulls with its full force.
 fn near(at: Vec3, held: Vec3) -> Vec3 {
     let gap = at - held;
     held + gap * min(GRIP_STRETCH / max(gap.length(), 1e-9), 1.0)

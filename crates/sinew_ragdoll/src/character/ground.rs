@@ -21,7 +21,7 @@ pub(super) fn below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId
 
 /// Returns the hit of [`below`], with the supporting body.
 pub(super) fn found_below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId]>) -> Option<BodyHit> {
-    // A ray that starts inside a shape does not give the height.
+    // A ray that starts inside a shape does not find the height of the surface.
     first_below(world, point, above, own).filter(|hit| hit.start.is_none())
 }
 
@@ -60,8 +60,9 @@ pub(super) fn bearer(world: &World, ray: &Ray, own: &[BodyId]) -> Option<BodyHit
     world.query().filter(QueryFilter::without(own)).accept(bears).first(ray)
 }
 
-/// Returns true if a character that walked from one place to the next, without a mover, has left its ground: within
-/// `radius` of the first place ground is near, and within `radius` of the second it is lower than a step, or absent.
+/// Returns true if a character without a mover has walked over an edge: there is ground near the first place, within
+/// `radius` of it, and the ground within `radius` of the second place is absent, or lower by more than the highest
+/// step.
 pub(super) fn ends_between(
     world: &World,
     [from, to]: [Vec3; 2],
@@ -70,7 +71,7 @@ pub(super) fn ends_between(
 ) -> bool {
     let height = |point: Vec3| {
         let hit = first_below(world, point, HIGHEST_STEP, own)?;
-        // Inside a wall is no edge.
+        // A point inside a wall counts as ground, because there is no edge.
         Some(if hit.start.is_some() { point.y } else { hit.point.y })
     };
     let highest = |at: Vec3| {
@@ -81,7 +82,8 @@ pub(super) fn ends_between(
     highest(to).is_none_or(|height| height < stood - HIGHEST_STEP)
 }
 
-/// Returns the condition of queries for shapes that push, neither sensors nor ghosts nor yielding ones.
+/// Returns a query condition that accepts only shapes whose contacts push: no sensors, and no bodies that others pass
+/// through or that yield.
 pub(super) fn pushes(world: &World) -> impl Fn(BodyId, u32) -> bool + '_ {
     |body, shape| {
         let rule = world.contact_rule(ShapeId { body, shape });
@@ -89,7 +91,7 @@ pub(super) fn pushes(world: &World) -> impl Fn(BodyId, u32) -> bool + '_ {
     }
 }
 
-/// Motion of the ground under a body; the default is at rest.
+/// Motion of the ground under a body; by default the ground is at rest.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct GroundMotion {
     velocity: Velocity,
@@ -108,7 +110,7 @@ impl GroundMotion {
     }
 }
 
-/// Returns the motion of the body under a pelvis, the first of `bodies`.
+/// Returns the motion of the body under the pelvis, which is the first of `bodies`.
 pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
     let Some(&pelvis) = bodies.first() else { return GroundMotion::default() };
     let ray = Ray { origin: world.center_of_mass(pelvis), direction: Vec3::Y * -LIES_ON };
@@ -116,14 +118,15 @@ pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
     GroundMotion { velocity: world.velocity(hit.body), center: world.center_of_mass(hit.body) }
 }
 
-/// Returns true if a lying body, its pelvis the first of `own`, is low over ground, or firm ground supports it.
+/// Returns true if the ground supports a lying character: its pelvis, the first of `own`, is close above the ground, or
+/// firm ground carries enough of its weight.
 pub(super) fn bears(def: &RagdollDef, own: &[BodyId], world: &World) -> bool {
     let Some(&pelvis) = own.first() else { return true };
     let (at, low) = (world.center_of_mass(pelvis), LIES_LOW * def.height);
     if found_below(world, at, LYING_SEARCH, Some(own)).is_some_and(|hit| at.y - hit.point.y < low) {
         return true;
     }
-    // Kinematic bodies may carry it, as arms do.
+    // Kinematic bodies do not count, because they may be the arms of a character that carries this one.
     let least = LEAST_TREAD * def.total_mass;
     let bears = |body| world.kind(body) != BodyKind::Kinematic && is_firm(world, body, least);
     let lift = |contact: &BodyContact| {

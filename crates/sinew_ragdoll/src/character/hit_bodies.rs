@@ -21,7 +21,7 @@ pub(super) struct Strike {
 }
 
 impl Physique {
-    /// Moves the hit bodies to the predicted pose at the end of the next step.
+    /// Sets the velocities that move the hit bodies to their predicted poses at the end of the next step.
     pub fn lead(
         &mut self,
         def: &CharacterDef,
@@ -73,7 +73,7 @@ impl Physique {
     }
 
     /// Bounds how much the velocities of bodies that become dynamic differ from those of the hit bodies: a lift out of
-    /// the floor that has just begun is no motion.
+    /// the floor that has just begun must not become a speed.
     pub fn bound_change(&self, states: &mut [BodyState], world: &World) {
         if self.before.is_empty() {
             return;
@@ -90,8 +90,9 @@ impl Physique {
         }
     }
 
-    /// Returns the strongest hit on the character's bodies in the last step, with the body's index, if it exceeds the
-    /// threshold. `steps`: the character stands on its own feet, whose steps do not count as hits.
+    /// Returns the strongest hit on the character's bodies in the last step, with the body's index; `None` below the
+    /// threshold [`InWorld::feels`](super::InWorld::feels). If `steps` is true, the character balances on its feet, and
+    /// contacts with static bodies do not count as hits.
     pub fn felt(&self, def: &CharacterDef, steps: bool, world: &World) -> Option<(usize, Strike)> {
         let least = def.in_world.feels;
         if self.hit.is_empty() || least == f32::INFINITY {
@@ -106,7 +107,7 @@ impl Physique {
             }
         };
         let own = |id: BodyId| self.index_of(id);
-        // The character's own steps do not count as hits, and neither do contacts with static bodies.
+        // The steps of a character that balances do not count as hits.
         let stands = |id: BodyId| steps && world.contains(id) && world.kind(id) == BodyKind::Static;
         for hit in &world.events().hits {
             match (own(hit.a.body), own(hit.b.body)) {
@@ -131,7 +132,8 @@ impl Physique {
         felt
     }
 
-    /// Returns the impulses of blasts, bullets and forces on kinematic bodies in the last step, by index.
+    /// Returns the impulses of blasts, bullets and forces on the character's kinematic bodies in the last step, each
+    /// with the body's index.
     pub fn pushes(&self, world: &World) -> Vec<(usize, Push)> {
         let pushed = world.events().pushed.iter();
         pushed.filter_map(|push| Some((self.index_of(push.body)?, *push))).collect()
@@ -147,7 +149,7 @@ impl Physique {
         force * world.def().dt()
     }
 
-    /// Applies impulses to those of the bodies that are no longer kinematic.
+    /// Applies the impulses to those of their bodies that have become dynamic.
     pub fn take_pushes(&self, pushes: &[(usize, Push)], world: &mut World) {
         for &(_, Push { body, impulse, angular_impulse }) in pushes {
             if world.kind(body) == BodyKind::Dynamic {
@@ -169,8 +171,8 @@ impl Physique {
         })
     }
 
-    /// Applies the impulse that a kinematic body stopped, shared along its chain by the striker's speed. The rest
-    /// beyond the pelvis is lost.
+    /// Applies the impulse that a body stopped while it was kinematic. Each body from it up to the pelvis takes at most
+    /// the impulse that gives it the striker's speed; the rest is lost.
     pub fn take_up(&self, def: &CharacterDef, body: usize, strike: Strike, world: &mut World) {
         let (way, mut left) = direction_and_length(strike.impulse);
         for (body, share) in shares(&def.ragdoll, body, max(strike.speed, GIVES_WAY)) {
@@ -183,10 +185,10 @@ impl Physique {
         }
     }
 
-    /// Applies an impulse to a body, at a point or at its centre of mass, and returns the work, joules.
+    /// Applies an impulse to a body, at `point` or at its centre of mass, and returns the work, joules.
     ///
-    /// A share that would make the body faster than [`HIT_SPEED`] goes to the bodies above it; otherwise a strong hit
-    /// would throw a hand away. The rest beyond the pelvis goes to the struck body.
+    /// The part that would make the body faster than [`HIT_SPEED`] goes to the bodies above it in its chain; otherwise
+    /// a strong hit would throw a hand away. What exceeds the shares of all these bodies goes to the struck body.
     pub fn push(
         &self,
         def: &CharacterDef,
@@ -218,8 +220,9 @@ impl Physique {
     }
 }
 
-/// Moves the earlier pose of a body toward its present one until `share` of its motion is left; a larger share than 1
-/// changes nothing. A jump is not extrapolated, since the body would overshoot by the length of the jump.
+/// Moves the earlier pose `before` of a body toward its present pose until `share` of its motion is left; does nothing
+/// if `share` is 1 or more. So a jump is not extrapolated, which would make the body overshoot by the length of the
+/// jump.
 fn slow_down(before: &mut Transform, now: &Transform, share: f32) {
     if share < 1.0 {
         let translation = now.translation + (before.translation - now.translation) * share;
@@ -234,10 +237,9 @@ fn shares(def: &RagdollDef, body: usize, speed: f32) -> impl Iterator<Item = (us
     core::iter::successors(Some(body), parent).map(move |body| (body, def.bodies[body].mass.mass * speed))
 }
 
-/// Returns the impulse of another body on one of the character's, with `way` the direction from the other body to it.
-/// The impulse is at most the one that the striker could give to the whole character, `whole` kg. A keyed body gets
-/// only the striker's own momentum: a foot that lands on a hand presses the hand to the ground however strongly it is
-/// keyed.
+/// Returns the impulse of another body on one of the character's bodies. `way` is the direction from the other body to
+/// the character's. The impulse is at most the one that the striker could give to the whole character, `whole` kg. The
+/// motion of a kinematic body toward the striker does not count, so that its own speed does not increase the hit.
 fn taken(world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3, whole: f32) -> Strike {
     let Velocity { linear, angular } = world.velocity(own);
     let led = linear + angular.cross(hit.point - world.center_of_mass(own));
@@ -247,8 +249,8 @@ fn taken(world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3, whole: 
     Strike { impulse: way * min(hit.impulse, meeting_mass(world, other, whole) * speed), speed }
 }
 
-/// Returns the effective mass of the character and the striker for a push between them, kg; jointed or immovable
-/// strikers count as infinite.
+/// Returns the effective mass of the character and the striker for a push between them, kg. The mass of a striker that
+/// is jointed or cannot move counts as infinite.
 fn meeting_mass(world: &World, other: BodyId, whole: f32) -> f32 {
     if world.contains(other) && is_limb(world, other) {
         let mass: f32 = together(world, other).iter().map(|&body| world.mass(body).mass).sum();

@@ -1,5 +1,5 @@
 //! Bodies attached to a character's bodies: a sword in a hand, a lantern on a belt. Hit bodies and ragdoll are the same
-//! bodies, so a body is held in every state.
+//! bodies, so a body stays attached in every state.
 
 use super::CharacterEvent;
 use super::event::Events;
@@ -15,9 +15,9 @@ use sinew_physics::{
 pub struct Grip {
     /// Transform from the frame of the held body to the frame of the bone's body. Default: identity.
     pub bone_from_held: Transform,
-    /// Force and torque beyond which the held body is torn off. Default unbreakable.
+    /// Force and torque beyond which the held body is torn off. Default: unbreakable.
     pub strength: Strength,
-    /// True if the held body is dropped when the character goes limp. Default false.
+    /// True if the character drops the held body when it goes limp. Default false.
     pub drops: bool,
 }
 
@@ -27,7 +27,7 @@ impl Default for Grip {
     }
 }
 
-/// A held body, and its holder.
+/// A held body, and the connection by which one of the character's bodies holds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hold {
     pub held: BodyId,
@@ -35,22 +35,24 @@ pub(super) struct Hold {
     /// Index of the body that holds `held`.
     pub body: u32,
     pub drops: bool,
-    /// A pulling grip; `None`: a fixed joint.
+    /// State of a grip that pulls; `None` if the joint is fixed.
     pub grasp: Option<Grasp>,
 }
 
-/// Bodies that a character holds, has released, or stands on. The character's own bodies pass through all of these.
+/// Bodies that a character holds or has released, and the body on which it stands. The character's own bodies pass
+/// through all of them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Grips {
     pub holds: Vec<Hold>,
     /// Released limbs, whose bodies the character's own bodies pass through until they have separated.
     pub freed: Vec<BodyId>,
-    /// Dynamic body under the mover.
+    /// Dynamic body on which the mover stands.
     pub bearer: Option<BodyId>,
 }
 
 impl Grips {
-    /// Attaches a body by a fixed joint to one of the character's bodies, `own[body]`, at the velocity of that one.
+    /// Moves a body to one of the character's bodies, `ids[body]`, gives it that body's motion, and attaches it with a
+    /// fixed joint.
     pub fn hold(
         &mut self,
         (ids, own): (&[BodyId], &[BodyId]),
@@ -93,7 +95,7 @@ impl Grips {
         self.holds.iter().map(|hold| hold.held)
     }
 
-    /// Drops torn or missing bodies, and pulls the other grips.
+    /// Releases held bodies that were torn off or removed, and lets the grips pull in the next step.
     pub fn mind(&mut self, own: &[BodyId], world: &mut World, events: &mut Events) {
         while let Some(lost) = self.torn(world) {
             self.release(own, lost, world, events);
@@ -112,7 +114,7 @@ impl Grips {
         Some(self.holds.iter().find(is_lost)?.held)
     }
 
-    /// Drops all held bodies, or only those dropped when going limp.
+    /// Releases all held bodies, or only those that the character drops when it goes limp.
     pub fn release_all(
         &mut self,
         own: &[BodyId],
@@ -126,7 +128,7 @@ impl Grips {
         }
     }
 
-    /// Drops the bodies that the bodies `parts`, by index, hold.
+    /// Releases the bodies that are held by the bodies with the indices `parts`.
     pub fn drop_from(&mut self, own: &[BodyId], parts: &[usize], world: &mut World, events: &mut Events) {
         let holds = self.holds.iter();
         let dropped: Vec<BodyId> =
@@ -136,8 +138,8 @@ impl Grips {
         }
     }
 
-    /// Lets a body pass through the character's bodies and through movers, or reverts that. For a body of another
-    /// character this applies to all of that character's bodies; the two characters collide again once they have
+    /// Sets whether a body passes through the character's bodies and through movers. For a body of another character
+    /// this applies to all of that character's bodies; after a release the two characters collide again once they have
     /// separated.
     pub fn set_passes(&mut self, own: &[BodyId], other: BodyId, passes: bool, world: &mut World) {
         let rule = if passes { ContactRule::Yields(Yields::default()) } else { ContactRule::Push };
@@ -162,8 +164,9 @@ impl Grips {
         }
     }
 
-    /// Lets the character's bodies pass through the dynamic body under its mover. This body gets only the mover's
-    /// weight: feet that kick the crate on which their character rides would accelerate both without end.
+    /// Lets the character's bodies pass through the dynamic body under its mover, so that this body gets only the
+    /// mover's weight. Otherwise feet that kick the crate on which their character rides would accelerate both without
+    /// end.
     pub fn spare_bearer(&mut self, own: &[BodyId], mover: Option<MoverId>, world: &mut World) {
         let ground = mover.and_then(|mover| world.mover_ground(mover));
         let bearer = ground.and_then(|ground| ground.shape).map(|shape| shape.body);

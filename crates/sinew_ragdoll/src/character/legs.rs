@@ -69,16 +69,16 @@ impl Legs {
         })
     }
 
-    /// Returns the displacement of an ankle on a slope along its normal instead of the vertical; `model` is in the
-    /// space of the character.
+    /// Returns the displacement of an ankle that is raised along the normal of a slope instead of the vertical; `model`
+    /// and the result are in character space.
     pub fn lean(&self, foot: usize, slope: f32, model: &[Affine]) -> Vec3 {
         let ankle = model[self.chains[foot].end].to_rigid();
         let ahead = normalize_or(ankle.rotation * self.balls[foot] * Vec3::new(1.0, 0.0, 1.0), Vec3::ZERO);
         ahead * (slope / (1.0 + slope * slope).sqrt() * (self.ankle_height - ankle.translation.y))
     }
 
-    /// Moves a pose's feet onto the planted ground, by the pelvis and the knees; `up` is in character space. `model` is
-    /// cleared and filled.
+    /// Moves the feet of a pose onto the ground in `planting`, by moving the pelvis and bending the knees; `up` is in
+    /// character space. Updates `model` to the new pose.
     pub fn place(
         &self,
         rig: &Rig,
@@ -160,7 +160,7 @@ impl Planting {
         }
     }
 
-    /// Resets a foot that is back on the floor of its clip.
+    /// Sets the state of a foot to zero once it is back on the floor of its clip.
     pub fn come_to_rest(&mut self, foot: usize, goal: Need) {
         let all = [self.heights[foot], self.rates[foot], self.slopes[foot], self.slope_rates[foot]];
         if goal == Need::default() && all.iter().all(|x| x.abs() < FOOT_HOME) {
@@ -182,7 +182,8 @@ impl Planting {
     }
 }
 
-/// Advances `x` by `x″ = −ω²(x − g) − 2ω x′` for `dt` seconds, solved exactly.
+/// Advances `x` and its rate for `dt` seconds by the exact solution of `x″ = −ω²(x − g) − 2ω x′`, a critically damped
+/// spring.
 pub(super) fn follow(x: &mut f32, rate: &mut f32, goal: f32, quickness: f32, dt: f32) {
     let decay = trig::exp(-quickness * dt);
     let off = *x - goal;

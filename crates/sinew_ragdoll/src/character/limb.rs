@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// First bytes of a saved limb; the last one is the version.
 const MAGIC: &[u8; 8] = b"sinew-l\x01";
-/// Number of saved bytes of a body, and of a joint of the skin.
+/// Number of bytes in which a body or a joint of the skin is saved.
 const BODY_BYTES: usize = 12;
 const SKIN_BYTES: usize = 56;
 
@@ -23,7 +23,7 @@ pub struct Limb {
     /// Indices of the limb's bodies in the definition, ascending; all others are descendants of the first.
     parts: Vec<usize>,
     bodies: Vec<BodyId>,
-    /// Joints to the body above, one for each body but the first.
+    /// Joint from each body, except the first, to the body above it.
     joints: Vec<JointId>,
     skin: Vec<SkinJoint>,
 }
@@ -38,8 +38,8 @@ struct SkinJoint {
 }
 
 impl Limb {
-    /// Creates a limb whose bodies are in the world. `world_from_joint`: transforms of every joint of the rig at that
-    /// moment; `poses`: those of the limb's bodies.
+    /// Creates a limb from bodies in the world. `world_from_joint` contains the present transform of every joint of the
+    /// rig, `poses` those of the limb's bodies.
     pub(super) fn new(
         def: Arc<CharacterDef>,
         parts: Vec<usize>,
@@ -120,7 +120,7 @@ impl Limb {
     }
 
     /// Detaches a part of the limb, by role or bone, like [`Character::detach`](super::Character::detach). `None` if
-    /// the limb has no such body, or that is its first one.
+    /// the limb does not contain that body, or the body is its first.
     ///
     /// # Panics
     /// If no body of the definition has that name, or one of the limb's bodies is missing.
@@ -149,7 +149,7 @@ impl Limb {
         for skin in &self.skin {
             let part = self.parts[skin.body];
             let to = if is_off(&part) { &mut off } else { &mut left };
-            let body = to.parts.iter().position(|&own| own == part).expect("the ragdoll has this body");
+            let body = to.parts.iter().position(|&own| own == part).expect("the new limb contains this body");
             to.skin.push(SkinJoint { body, ..*skin });
         }
         *self = left;
@@ -192,14 +192,14 @@ impl Limb {
         }
     }
 
-    /// Reads a saved limb of a character of that definition. The limb's bodies come from the world's snapshot of the
-    /// same time.
+    /// Reads a saved limb of a character with the definition `def`. The limb's bodies come from the world's snapshot of
+    /// the same time.
     ///
     /// # Errors
     /// If the bytes are not a saved limb of this definition and version.
     pub fn load(def: &Arc<CharacterDef>, r: &mut Reader<'_>) -> Result<Self, ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
-            return Err(r.error("is not a limb of this version"));
+            return Err(r.error("these bytes are not a limb saved by this version"));
         }
         let def = def.clone();
         let mut limb =

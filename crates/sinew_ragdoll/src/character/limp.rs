@@ -16,7 +16,7 @@ use sinew_physics::{BodyId, Velocity, World};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Lying {
     pub stillness: Stillness,
-    /// Displacement out of shapes in which the character was deep when it went limp.
+    /// Displacement of the character out of shapes that it penetrated deeply.
     pub clearing: Clearing,
 }
 
@@ -29,7 +29,7 @@ pub(super) struct Stillness {
     pub calm_steps: u32,
     pub settled: bool,
     pub touched: bool,
-    /// True if no body was on the character when it last tried to get up.
+    /// True if nothing prevented the character's last attempt to get up.
     pub free: bool,
 }
 
@@ -38,21 +38,22 @@ pub(super) struct Stillness {
 pub(super) struct Clearing {
     /// Remaining displacement after the next step, world, metres.
     pub way: Vec3,
-    /// Velocities of the bodies at the end of the displacement; empty without one.
+    /// Velocities that the bodies get at the end of the displacement; empty if there is no displacement.
     pub velocities: Vec<Velocity>,
 }
 
 /// Result of a step while lying.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Lain {
-    /// True if a body touched another object for the first time.
+    /// True if a body touched another object for the first time since the character went limp.
     pub touched: bool,
-    /// Time for which the character has lain still, seconds, once it settles.
+    /// Time for which the character has lain still, seconds, in the step in which it settles; otherwise `None`.
     pub settled: Option<f32>,
 }
 
 impl Stillness {
-    /// Updates whether the bodies touch another object and lie still. `on_ground`: relative to the body under them.
+    /// Checks whether the bodies touch another object and lie still. If `on_ground` is true, their speeds are measured
+    /// relative to the body under them.
     pub fn look(&mut self, world: &World, own: &[BodyId], on_ground: bool) -> Lain {
         let mut lain = Lain::default();
         if !self.touched && touches_world(world, own) {
@@ -72,7 +73,7 @@ impl Stillness {
         lain
     }
 
-    /// Restarts the time of a character that is held; it counts once the character is free.
+    /// Resets the time for which the character has lain, because it is held; the time counts again once it is free.
     pub fn wait(&mut self, dt: f32) {
         let slack = (SLACKENS / dt) as u32 + 1;
         self.steps = u32::min(self.steps, slack);
@@ -86,12 +87,13 @@ impl Stillness {
 }
 
 impl Physique {
-    /// Returns the ragdoll, if there is one.
+    /// Returns the ragdoll; panics if there is none.
     pub fn limp(&self) -> &Ragdoll {
-        self.ragdoll.as_ref().expect("a limp character has bodies")
+        self.ragdoll.as_ref().expect("a character in this state has a ragdoll")
     }
 
-    /// Applies a share of the friction to the joints: the full friction would stop a hand within a step.
+    /// Applies `share` of the full friction, at most all of it, to the joints. The full friction would stop a hand
+    /// within a step.
     pub fn slacken(&self, def: &CharacterDef, share: f32, world: &mut World) {
         for (child, id) in self.limp().own_joints() {
             let joint = &def.ragdoll.joints[child - 1];
@@ -99,7 +101,8 @@ impl Physique {
         }
     }
 
-    /// Lets joints without bodies come to rest gradually: toes, helpers, and translations of joints.
+    /// Starts to decay the motion of joints without bodies (toes, helpers, translations of joints). `seconds` is the
+    /// time between the present pose and the one before.
     pub fn let_linger(&mut self, figure: &Figure, seconds: f32, scratch: &mut Scratch) {
         let now: Pose = figure.pose.iter().copied().collect();
         let earlier: Pose = figure.earlier.pose.iter().copied().collect();
@@ -108,7 +111,7 @@ impl Physique {
         scratch.resting = now;
     }
 
-    /// Computes the base pose, with the decaying rest of its motion a step later, in `scratch.pose`.
+    /// Computes in `scratch.pose` the base pose plus the decaying motion of joints without bodies, `seconds` later.
     fn come_to_rest(&mut self, seconds: f32, scratch: &mut Scratch) {
         let base = self.physical.base();
         scratch.pose.clear();
@@ -125,8 +128,8 @@ impl Physique {
         scratch.pose.extend(resting.iter());
     }
 
-    /// Moves the transform of a limp character with its pelvis; the transform approaches the point under the pelvis, as
-    /// high as the lowest body.
+    /// Moves the transform of a limp character with its pelvis. The transform also approaches the point that is below
+    /// the pelvis at the height of the lowest body.
     pub fn take_along(&self, place: &mut Transform, world: &World, scratch: &mut Scratch) {
         let Some(&pelvis) = self.own().first() else { return };
         let dt = world.def().dt();
@@ -142,8 +145,8 @@ impl Physique {
         }
     }
 
-    /// Takes the pose from the bodies, except for joints without a body. Bodies that have not moved since the last pose
-    /// need no new pose, which saves most of the time of a fall.
+    /// Computes the pose from the bodies, except for joints without a body. Keeps the last pose if no body has moved
+    /// since, which saves most of the time while a character lies.
     pub fn pose(&mut self, def: &CharacterDef, figure: &mut Figure, world: &World, scratch: &mut Scratch) {
         self.poses(def, world, scratch);
         if self.lingering.is_over() && scratch.posed == scratch.after {
@@ -159,12 +162,12 @@ impl Physique {
     }
 }
 
-/// Returns true if every body is below the stillness speeds.
+/// Returns true if every body is slower than [`STILL_LINEAR`] and [`STILL_ANGULAR`].
 pub(crate) fn is_still(world: &World, bodies: &[BodyId]) -> bool {
     is_still_on(world, bodies, GroundMotion::default())
 }
 
-/// Returns true if every body is below the stillness speeds relative to the body under them.
+/// Returns true if every body is slower than [`STILL_LINEAR`] and [`STILL_ANGULAR`] relative to the ground `ground`.
 fn is_still_on(world: &World, bodies: &[BodyId], ground: GroundMotion) -> bool {
     bodies.iter().all(|&body| {
         let velocity = world.velocity(body);
@@ -173,7 +176,7 @@ fn is_still_on(world: &World, bodies: &[BodyId], ground: GroundMotion) -> bool {
     })
 }
 
-/// Returns true if one of the bodies is deeper than [`SUNK`] in static shapes and being pushed out.
+/// Returns true if one of the bodies is deeper than [`SUNK`] in static bodies, so that contacts still push it out.
 pub(crate) fn is_sunk(world: &World, bodies: &[BodyId]) -> bool {
     bodies.iter().any(|&body| world.penetration(body) > SUNK)
 }

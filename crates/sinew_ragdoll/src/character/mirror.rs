@@ -8,7 +8,7 @@ use crate::character::tuning::{MIRROR_TOLERANCE, MOVED};
 use sinew_anim::{JointIdx, LocalTransform, Rig, local_to_model};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
-/// Counterparts of the joints on the other side of the body.
+/// Counterpart of each joint on the other side of the body.
 #[derive(Clone, Debug)]
 pub(super) struct Mirror {
     /// Counterpart of each joint; a joint of the midline, or one without a counterpart, is its own.
@@ -39,8 +39,9 @@ impl Mirror {
         Self { twins, one_sided, bind: bind.iter().map(|bind| bind.rotation).collect() }
     }
 
-    /// Returns the mirror image of a flat pose. A joint with an animated translation takes the counterpart's
-    /// translation; others keep their own, since the two sides of a rig may differ.
+    /// Returns the mirror image of a pose whose root motion is in the pelvis. A joint with an animated translation gets
+    /// the mirrored translation of its counterpart; other joints keep their own, because the two sides of a rig may
+    /// differ.
     pub fn pose(&self, def: &CharacterDef, pose: &[LocalTransform]) -> Vec<LocalTransform> {
         let (rig, mapping) = (&def.rig, def.mapping());
         let root = mapping.character_from_model();
@@ -91,8 +92,8 @@ fn reflected(q: Rotation) -> Rotation {
     Rotation::from_xyzw(q.x, -q.y, -q.z, q.w)
 }
 
-/// Returns counterparts by the positions of joints in the bind pose: below counterparts, the joint nearest to the
-/// mirror image.
+/// Returns counterparts according to the positions of joints in the bind pose: among the children of two counterparts,
+/// the joint nearest to the mirror image of the other.
 fn by_places(rig: &Rig, bind: &[Transform], tolerance: f32) -> Vec<JointIdx> {
     let mut twins: Vec<JointIdx> = Vec::with_capacity(bind.len());
     for (joint, node) in rig.joints.iter().enumerate() {

@@ -109,9 +109,9 @@ pub struct Character {
     def: Arc<CharacterDef>,
     /// State of the character, with its data.
     activity: Activity,
-    /// Action of the character once it lies still.
+    /// Action that the character takes once it lies still.
     after_settling: AfterSettling,
-    /// Level of detail, now or once clips move the character; `None` outside of a world.
+    /// Level of detail that applies while clips move the character; `None` outside of a world.
     detail: Option<Detail>,
     gait: Gait,
     figure: Figure,
@@ -216,7 +216,7 @@ impl Character {
         self.events.list.extend(fired.iter().map(|&fired| CharacterEvent::Clip(fired)));
     }
 
-    /// Places the feet on the ground.
+    /// Plants the feet and computes the shown pose.
     fn plant(&mut self, world: &World) {
         let stand = Stand {
             def: &self.def,
@@ -232,9 +232,10 @@ impl Character {
         self.feet.plant(&stand, world, &mut self.scratch.model);
     }
 
-    /// Exchanges hits, hit bodies and steering between the world and a character that its clips move.
+    /// Applies the effects of the world on a character that its clips move: falls, hits and wind. Then sets the motion
+    /// of its hit bodies and mover for the next step.
     fn attend(&mut self, world: &mut World) {
-        // Outside of a world, only an edge fells a character.
+        // Outside of a world, a character falls only over an edge.
         if self.gait.falls && (self.is_in_world() || self.state() == State::Animated) {
             return self.go_limp(world);
         }
@@ -251,7 +252,7 @@ impl Character {
         self.steer(world);
     }
 
-    /// Makes the character flinch or fall after hits on its bodies in the last step.
+    /// Makes the character flinch or fall if its bodies were hit in the last step.
     fn feel(&mut self, world: &mut World) {
         if !self.is_in_world() {
             return;
@@ -266,7 +267,7 @@ impl Character {
         }
     }
 
-    /// Reacts to blasts, other impulses on kinematic bodies, and fields.
+    /// Applies the effects of blasts, other impulses on kinematic bodies, and fields.
     fn apply_pushes(&mut self, world: &mut World) {
         let pushes = self.physique.pushes(world);
         let blown = self.physique.field_impulse(world);
@@ -294,13 +295,13 @@ impl Character {
         momentum != Vec3::ZERO && self.gait.air == 0.0 && self.is_swept_by(blow)
     }
 
-    /// Moves the hit bodies toward the predicted pose.
+    /// Sets the motion of the hit bodies toward the predicted pose for the next step.
     fn lead_bodies(&mut self, world: &mut World) {
         let pose = self.feet.led(&self.figure.pose);
         self.physique.lead(&self.def, pose, self.figure.place, &mut self.scratch, world);
     }
 
-    /// Sets the mover's motion.
+    /// Sets the mover's motion for the next step.
     fn steer(&mut self, world: &mut World) {
         let mover = self.gait.mover;
         self.grips.spare_bearer(self.physique.own(), mover, world);
@@ -308,7 +309,7 @@ impl Character {
         self.gait.steer(&self.def, &self.activity, rotation, steps, world);
     }
 
-    /// Advances by a step while clips and physics share the bodies.
+    /// Advances a flinching or powered character by a step: clips and physics together move its bodies.
     fn go_powered(&mut self, world: &mut World) {
         self.advance(world);
         self.plant(world);
@@ -347,7 +348,7 @@ impl Character {
         flinch.seconds > 0.0 || !self.is_at_clips(world)
     }
 
-    /// Steps to keep the character's balance; returns true if that fails.
+    /// Takes steps that keep a powered character's balance; returns true if they cannot prevent a fall.
     fn keep_balance(&mut self, world: &World) -> bool {
         let steps = self.steps();
         let Activity::Powered(balance) = &mut self.activity else { return false };
@@ -360,7 +361,8 @@ impl Character {
         balance.go_on(on, steps, &mut self.scratch, world, &mut self.events)
     }
 
-    /// Makes a held limb weak. A character that is held by the pelvis, or that gets up, goes limp.
+    /// Makes a limb that another object holds weak. A character that is held by the pelvis, or is held while it gets
+    /// up, goes limp.
     fn give_way_to_grips(&mut self, world: &mut World) {
         if self.physique.hit.is_empty() || self.physique.ragdoll.is_some() {
             return;
@@ -372,7 +374,7 @@ impl Character {
         }
     }
 
-    /// Follows a held limb; returns true if the limb is pulled too far from its clip.
+    /// Makes a flinching character follow its held limb; returns true if the limb is pulled too far from its clip.
     fn is_pulled_over(&mut self, world: &World) -> bool {
         if !matches!(self.activity, Activity::Flinching(_)) {
             return false;
@@ -443,8 +445,8 @@ impl Character {
         self.prepare(world);
     }
 
-    /// Returns true while the character is held. Movers then pass through it, so that it does not block the character
-    /// that drags it.
+    /// Updates a limp character's contact rule and returns true while it is held. Movers pass through a held character,
+    /// so that it does not block the character that drags it.
     fn mind_grips(&mut self, world: &mut World) -> bool {
         let is_gripped = self.grips.is_gripped(&self.physique, world);
         let ragdoll = self.physique.limp();
@@ -460,7 +462,8 @@ impl Character {
         is_gripped
     }
 
-    /// Advances preparing by a step; the character gets up when its body is near the start of the clip, or time is up.
+    /// Advances a preparing character by a step. It gets up once its body is near the start of the clip, or its time to
+    /// prepare is over.
     fn go_preparing(&mut self, world: &mut World) {
         self.follow_bodies(world);
         let stays = self.after_settling == AfterSettling::StayDown || !self.lies_on_ground(world);
@@ -485,8 +488,8 @@ impl Character {
         prepare::draw(&def, &choice, &mut self.physique, &mut self.scratch, world);
     }
 
-    /// Returns true if ground is under the pelvis, or the static world supports the character; a carried character does
-    /// not get up. Outside of a world: always true.
+    /// Returns true if the ground supports the lying character; a character that is carried does not get up. Always
+    /// true outside of a world.
     fn lies_on_ground(&self, world: &World) -> bool {
         !self.is_in_world() || ground::bears(&self.def.ragdoll, self.physique.own(), world)
     }

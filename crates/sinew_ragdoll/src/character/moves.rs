@@ -1,4 +1,4 @@
-//! A character's clips prepared for playback, once for all characters of a kind.
+//! The clips of a character definition, prepared once for playback by all its characters.
 
 use super::clearance::{Depths, PARTS};
 use super::floor::{Raised, moved};
@@ -23,15 +23,15 @@ use sinew_math::{Affine, Transform, Vec3, max, min};
 pub struct MotionError {
     /// Name of the clip.
     pub name: String,
-    /// Reason why it cannot be played.
+    /// Reason why the clip cannot be played.
     pub error: ClipBuildError,
 }
 
-/// Prepared moves of a kind of character.
+/// Prepared clips of a character definition.
 #[derive(Clone, Debug)]
 pub(super) struct Moves {
     pub set: AnimationSet,
-    /// Animation clips, in the order of [`MotionSet::clips`].
+    /// Ids in `set` of the clips, in the order of [`MotionSet::clips`].
     pub clips: Vec<ClipId>,
     /// Locomotion clips, slowest first; the first is the looped one.
     pub paces: Vec<Pace>,
@@ -44,7 +44,7 @@ pub(super) struct Moves {
     pub raised: Raised,
     /// Displacement of the looped clip to the position of the character, character space.
     pub shift: Vec3,
-    /// Largest depths of the clips that loop, or of the rest pose.
+    /// Largest depths of the body parts in the floor over the looped clips, or in the rest pose.
     pub deepest: Depths,
 }
 
@@ -64,18 +64,18 @@ pub(super) struct GetUp {
     pub id: ClipId,
     /// Clip times at which a get-up may begin.
     pub starts: Vec<Start>,
-    /// Largest depth of the parts in the floor.
+    /// Largest depths of the body parts in the floor over the clip.
     pub deepest: Depths,
 }
 
-/// A time of a get-up clip.
+/// A time of a get-up clip at which a get-up may begin.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
     /// Time in the clip, seconds.
     pub time: f32,
     /// Stance at this time, character space.
     pub stance: Stance,
-    /// Transform from each body to character space.
+    /// Transforms from each body to character space at this time.
     pub bodies: Vec<Transform>,
 }
 
@@ -167,7 +167,7 @@ impl Moves {
     }
 }
 
-/// Returns the poses of the clips that loop, or the rest pose.
+/// Returns the poses of all looped clips, or the rest pose if there are none.
 fn standing(def: &CharacterDef, motions: &MotionSet) -> Take {
     let mut poses = Take { frame_time: MIRRORED_FRAME, joints: def.rig.joints.len(), poses: Vec::new() };
     let faster = motions.faster.iter().map(|&(clip, _)| clip);
@@ -180,16 +180,16 @@ fn standing(def: &CharacterDef, motions: &MotionSet) -> Take {
     poses
 }
 
-/// Payload of the events that keep clips in step.
+/// Payload of the clip events that synchronize locomotion clips: the left foot lands.
 const LEFT: &str = "left";
 
-/// Returns the locomotion of a clip, if the character uses the clip.
+/// Returns the locomotion of a clip if it is the looped clip or a faster one.
 fn locomotion_of(motions: &MotionSet, index: usize) -> Option<Locomotion> {
     let looped = motions.looped.filter(|&clip| clip == index).map(|_| motions.locomotion);
     looped.or_else(|| motions.faster.iter().find(|(clip, _)| *clip == index).map(|&(_, by)| by))
 }
 
-/// Returns the looped clip and faster ones, by speed. Clips that are no faster than the one before are dropped.
+/// Returns the looped clip and the faster ones, in order of speed. Drops clips that are no faster than the one before.
 fn paces(def: &CharacterDef, set: &AnimationSet, clips: &[ClipId], motions: &MotionSet) -> Vec<Pace> {
     let pace = |index: usize| {
         let clip = set.clip(clips[index]);
@@ -224,14 +224,15 @@ fn built(def: &CharacterDef, clip: &Clip) -> Result<AnimatedClip, MotionError> {
         .map_err(|error| MotionError { name: clip.name.clone(), error })
 }
 
-/// Returns the clip with all its root motion in the pelvis: see [`Mapping`](crate::Mapping).
+/// Returns the clip with the motion of all joints above the pelvis moved to the pelvis: see
+/// [`Mapping`](crate::Mapping).
 fn flat(def: &CharacterDef, clip: &Clip) -> Clip {
     let moves_carriers = clip.channels.iter().any(|channel| def.mapping().carries(channel.joint));
     if moves_carriers { flat_take(def, clip, ROOT_FRAME).to_clip(&def.rig, &clip.name) } else { clip.clone() }
 }
 
 fn flat_take(def: &CharacterDef, clip: &Clip, frame_time: f64) -> Take {
-    // The time step grows with the duration, since a file may claim a clip of years.
+    // Limit the number of frames, because a file may contain a clip that claims to last for years.
     let shortest = f64::from(clip.duration) / (Take::MOST_FRAMES - 1) as f64;
     let mut take = Take::of(&def.rig, clip, if shortest > frame_time { shortest } else { frame_time });
     for frame in 0..take.frames() {
@@ -240,8 +241,8 @@ fn flat_take(def: &CharacterDef, clip: &Clip, frame_time: f64) -> Take {
     take
 }
 
-/// Returns a travelling clip in place, and its path. Frames divide the clip's length evenly, so that the last one is at
-/// its end.
+/// Splits a travelling clip into a clip in place and its path; `None` if it does not travel. The frames divide the
+/// clip's duration evenly, so that the last one is at its end.
 fn travelling(def: &CharacterDef, clip: &Clip) -> Option<(Clip, MotionTrack)> {
     let frames = (f64::from(clip.duration) / ROOT_FRAME).round();
     if !(frames >= 1.0 && frames < (Take::MOST_FRAMES - 1) as f64) {
@@ -257,7 +258,7 @@ fn mirrored(def: &CharacterDef, mirror: &Mirror, take: &Take) -> Take {
     Take { poses, ..*take }
 }
 
-/// Returns the root motion that the locomotion of the character adds to its looped clip, model space.
+/// Returns the root motion of [`Locomotion::Forward`] in model space; `None` for other locomotion.
 fn way(def: &CharacterDef, locomotion: Locomotion, duration: f32) -> Option<MotionTrack> {
     let Locomotion::Forward { speed } = locomotion else { return None };
     let model = def.mapping().character_from_model().inverse();
@@ -265,8 +266,8 @@ fn way(def: &CharacterDef, locomotion: Locomotion, duration: f32) -> Option<Moti
     Some(MotionTrack::straight(model.vector(Vec3::Z * speed), duration, up))
 }
 
-/// Returns the times at which a get-up may begin. A clip that begins sitting may begin only while its pelvis is low, for
-/// a lying body would snap to the crouch after it.
+/// Returns the times at which a get-up may begin. If the clip begins sitting, a get-up may begin only while the pelvis
+/// is low, because a lying body would snap to the crouch that follows.
 fn starts(def: &CharacterDef, landmarks: &Landmarks, take: &Take) -> Vec<Start> {
     let last = (take.frames() - 1) as f32 * MAY_BEGIN;
     let apart = usize::max(take.frames_in(STARTS_APART), 1);
@@ -276,7 +277,7 @@ fn starts(def: &CharacterDef, landmarks: &Landmarks, take: &Take) -> Vec<Start> 
             let (mut model, mut bodies) = (Vec::new(), Vec::new());
             local_to_model(&def.rig, take.pose(frame), &Affine::IDENTITY, &mut model);
             let (mapping, points) = (def.mapping(), Vec::new());
-            // This call fills in the bodies, too.
+            // This call also fills `bodies`.
             let stance = landmarks.stance(mapping, &model, Transform::IDENTITY, points, &mut bodies);
             Start { time: take.time(frame), stance, bodies }
         })
@@ -296,7 +297,8 @@ fn stance(rig: &Rig, mapping: &Mapping, landmarks: &Landmarks, pose: &[LocalTran
     landmarks.stance(mapping, &model, Transform::IDENTITY, Vec::new(), &mut Vec::new())
 }
 
-/// Returns the flat pose at the start of the looped clip, or the rest pose.
+/// Returns the pose at the start of the looped clip, with the motion of joints above the pelvis in the pelvis, or the
+/// rest pose.
 fn first_pose(def: &CharacterDef, motions: &MotionSet) -> Vec<LocalTransform> {
     let mut pose = def.rest().to_vec();
     if let Some(clip) = motions.looped {

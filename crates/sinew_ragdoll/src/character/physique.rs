@@ -1,4 +1,5 @@
-//! Bodies of a character in the world, without detached ones: hit bodies that its clips move, or a ragdoll with drives.
+//! Bodies of a character in the world: hit bodies that its clips move, or a ragdoll with drives. Detached bodies no
+//! longer belong to them.
 
 use super::CharacterDef;
 use super::figure::Scratch;
@@ -45,7 +46,8 @@ impl Physique {
         }
     }
 
-    /// Returns the bodies in the order of the definition, detached ones included. Empty for a character without bodies.
+    /// Returns the bodies in the order of the definition, including detached ones; empty for a character without
+    /// bodies.
     pub fn ids(&self) -> &[BodyId] {
         self.ragdoll.as_ref().map_or(&self.hit, |ragdoll| &ragdoll.bodies)
     }
@@ -70,7 +72,7 @@ impl Physique {
         self.lost.iter().map(|&(body, _)| body).collect()
     }
 
-    /// Updates the remaining bodies after a change.
+    /// Updates the list of remaining bodies after a change of the bodies.
     pub fn keep_own(&mut self) {
         let lost = self.lost_indices();
         let mut kept = core::mem::take(&mut self.kept);
@@ -141,7 +143,7 @@ impl Physique {
         self.mark_own(def, world);
     }
 
-    /// Removes all drives except those of a fall.
+    /// Sets all drives to those of a fall.
     pub fn let_go(&mut self, def: &CharacterDef, world: &mut World) {
         if let Some(ragdoll) = &self.ragdoll {
             self.drives.release(world, ragdoll);
@@ -169,7 +171,8 @@ impl Physique {
         }
     }
 
-    /// Computes the poses of the bodies of a ragdoll, in `scratch.after`; detached ones are at their rest position.
+    /// Computes the poses of the ragdoll's bodies in `scratch.after`; detached bodies are in their rest pose relative
+    /// to the remaining ones.
     pub fn poses(&self, def: &CharacterDef, world: &World, scratch: &mut Scratch) {
         let ragdoll = self.ragdoll.as_ref().expect("the ragdoll has bodies");
         ragdoll.poses(world, &mut scratch.after);

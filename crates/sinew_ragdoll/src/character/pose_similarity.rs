@@ -18,17 +18,17 @@ pub(super) struct Landmarks {
     /// Bodies whose orientation is compared too, by the ends of two short sticks, forward and up. The pelvis is the
     /// first.
     trunk: Vec<(usize, Rotation)>,
-    /// Weights, one for each joint and each stick, with the sum 1.
+    /// Weights of the points: the joints, then the ends of the sticks. Their sum is 1.
     weights: Vec<f32>,
     /// Length of the sticks, metres.
     stick: f32,
 }
 
-/// A pose, described by its landmarks.
+/// The landmarks of a pose, in character or world space.
 #[derive(Clone, Debug)]
 pub(super) struct Stance {
     pub points: Vec<Vec3>,
-    /// Rotation of the pelvis from its bind pose.
+    /// Rotation of the pelvis relative to its bind pose.
     pub pelvis: Rotation,
 }
 

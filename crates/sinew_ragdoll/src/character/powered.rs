@@ -16,7 +16,7 @@ use sinew_physics::World;
 pub enum Preset {
     /// Clips move the character: a lying character gets up, a powered one returns to the clips.
     Animated,
-    /// Clips move the character, with all bodies weak and returning as if all were struck.
+    /// Clips move the character, and all its bodies are weak and return to the clips, as if each had been struck.
     Flinching,
     /// Muscles drive the bodies to the clips, and soft pins keep the character near its position, strongest at the
     /// pelvis.
@@ -38,8 +38,7 @@ pub enum Part<'a> {
     From(&'a str),
 }
 
-/// Pin that keeps a body of a powered character near its position. Pins of legs and pelvis are stronger, because
-/// otherwise feet would drag.
+/// Pin that keeps a body of a powered character near its position; its bounds depend on the body.
 const NEAR: Pin = Pin { hertz: 2.0, damping_ratio: 1.0, max_force: 0.0, max_torque: 0.0 };
 const WALKS: Pin = Pin { hertz: 4.0, ..NEAR };
 
@@ -68,8 +67,8 @@ pub(super) fn set_drives(def: &CharacterDef, physique: &mut Physique, world: &Wo
     }
 }
 
-/// Returns true if the pelvis is too far from the pelvis of its clips for the feet to hold it, or leans too far. Its
-/// heading is ignored, because it lags behind when the character turns on the spot.
+/// Returns true if the pelvis is too far from its position in the clips, or leans too far from its rotation there. The
+/// heading of the pelvis is ignored, because it lags behind when the character turns on the spot.
 pub(super) fn is_toppled(
     def: &CharacterDef,
     animator: &Animator,

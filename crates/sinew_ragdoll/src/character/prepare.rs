@@ -17,22 +17,24 @@ use sinew_physics::{Velocity, World};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Preparing {
     pub stillness: Stillness,
-    /// Index of the get-up, and of its start.
+    /// Index of the get-up clip in [`Moves::get_ups`](super::moves::Moves::get_ups).
     pub get_up: u32,
+    /// Index of the start in [`GetUp::starts`](super::moves::GetUp::starts).
     pub start: u32,
     /// Remaining seconds.
     pub seconds: f32,
 }
 
 /// Largest rotation of the trunk from the start of its clip, radians, and largest mean distance of the joints, as a
-/// share of the body's height: first without driving, then after driving.
+/// share of body height, at which a body gets up without being driven to the start.
 const AT_ONCE: [f32; 2] = [0.85, 0.16];
+/// Largest rotation and distance, in the same units, at which a body that was driven counts as at the start.
 const NEAR_ENOUGH: [f32; 2] = [0.7, 0.14];
 /// Muscle that drives the limbs.
 const PULL: Muscle = Muscle { hertz: 2.0, damping_ratio: 1.0, strength: 0.6 };
 
 impl Preparing {
-    /// Starts driving toward the chosen start of a clip; `rolls`: the trunk must be rolled over.
+    /// Starts to drive a body toward the chosen start of a clip; `rolls` is true if the trunk must be rolled over.
     pub fn toward(def: &CharacterDef, choice: &Choice<'_>, rolls: bool, stillness: Stillness) -> Self {
         let index = |at: Option<usize>| at.unwrap_or_default() as u32;
         let get_ups = &def.moves().get_ups;
@@ -46,12 +48,12 @@ impl Preparing {
 }
 
 impl Choice<'_> {
-    /// Returns true if a body with this pelvis may get up without driving.
+    /// Returns true if a body whose pelvis has this rotation may get up without being driven.
     pub fn is_near(&self, def: &CharacterDef, pelvis: Rotation) -> bool {
         self.is_like(def, pelvis, AT_ONCE)
     }
 
-    /// Returns true if a driven body is near enough.
+    /// Returns true if a body that was driven is near enough to the start of the clip.
     pub fn is_reached(&self, def: &CharacterDef, pelvis: Rotation) -> bool {
         self.is_like(def, pelvis, NEAR_ENOUGH)
     }
@@ -72,7 +74,7 @@ impl Choice<'_> {
     }
 }
 
-/// Sets the drives toward the start of a clip.
+/// Sets the drives that move a body to the start of a clip; `rolls` is true if the trunk must be rolled over.
 pub(super) fn set_drives(def: &CharacterDef, rolls: bool, physique: &mut Physique, world: &World) {
     physique.drives.set_all(DriveMode::Powered(PULL), PREPARES_HALF_LIFE);
     if !rolls {

@@ -4,16 +4,17 @@ use super::CharacterDef;
 use sinew_anim::{Clip, LocalTransform, Wrap, local_to_model, sample};
 use sinew_math::{Affine, Transform, Vec3, max, min};
 
-/// Names of get-up clips, without case, blanks, `-` and `_`.
+/// Names of get-up clips, in lower case, without blanks, `-` and `_`.
 const NAMES: [&str; 3] = ["getup", "standup", "gettingup"];
-/// Largest uprightness of a lying pelvis (1 upright), and largest height of it as a share of that in the bind pose.
+/// Largest uprightness of a lying pelvis (1: upright), and its largest height, as a share of its height in the bind
+/// pose.
 const LYING: [f32; 2] = [0.6, 0.4];
 /// Least uprightness and height of a standing pelvis, in the same units as [`LYING`].
 const STANDING: [f32; 2] = [0.8, 0.8];
 
 impl CharacterDef {
-    /// Returns the indices of the get-up clips of this character: clips with such a name (`get_up`, `StandUp`, …), and
-    /// clips that start lying and end standing.
+    /// Returns the indices of those of the clips that are get-ups: clips with the name of a get-up (`get_up`,
+    /// `StandUp`, …), and clips that start lying and end standing.
     ///
     /// # Panics
     /// As [`sample`](sinew_anim::sample()).
@@ -29,8 +30,8 @@ impl CharacterDef {
             && end.iter().zip(STANDING).all(|(value, least)| *value > least)
     }
 
-    /// Returns the heights of the centre of mass over the lowest body at the start and the end of a clip, as shares of that in the
-    /// bind pose: about 1 standing, below 0.5 lying.
+    /// Returns the heights of the centre of mass above the lowest body at the start and at the end of a clip, as shares
+    /// of this height in the bind pose: about 1 for a standing pose, below 0.5 for a lying one.
     ///
     /// # Panics
     /// As [`sample`](sinew_anim::sample()).
@@ -51,7 +52,8 @@ impl CharacterDef {
         moment / mass
     }
 
-    /// Returns the uprightness of the pelvis (1 upright), and its height over that of the bind pose, at a time.
+    /// Returns the uprightness of the pelvis (1: upright) at a time of a clip, and its height as a share of its height
+    /// in the bind pose.
     fn posture(&self, clip: &Clip, time: f32) -> [f32; 2] {
         let pelvis = self.bodies_at(clip, time)[0];
         let bind = self.ragdoll.bodies[0].character_from_body;

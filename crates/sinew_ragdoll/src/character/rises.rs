@@ -1,5 +1,5 @@
 //! Ground under the parts of a character in a transition, where the ground differs from the floor of the clips: stairs,
-//! crates, slopes. Without it hands and knees would pass through a step beside the body.
+//! crates, slopes. If only the clips' floor counted, hands and knees would pass through a step beside the body.
 
 use super::clearance::{Clearance, Depths, PARTS, Passage, spread};
 use super::figure::Figure;
@@ -22,8 +22,8 @@ pub(super) struct Grounds<'a> {
 }
 
 impl Grounds<'_> {
-    /// Returns the depths of the parts of a pose in the floor of the character's transform, and in the ground below
-    /// them.
+    /// Returns two sets of depths of a pose's parts: in the floor of the character's transform, and in the ground below
+    /// each part.
     pub fn depths(
         self,
         def: &CharacterDef,
@@ -55,7 +55,7 @@ impl Grounds<'_> {
 }
 
 impl Passage {
-    /// Follows the ground under the parts of a pose for a step.
+    /// Advances the heights of the ground under the parts of a pose by a step.
     pub fn follow_ground(
         &mut self,
         def: &CharacterDef,

@@ -24,14 +24,14 @@ use sinew_physics::{BodyId, JointId, MoverId, Velocity};
 
 /// First bytes of a saved character; the last one is the version.
 const MAGIC: &[u8; 8] = b"sinew-c\x0b";
-/// Flag of a held body whose pulling grip is saved after it.
+/// Flag of a held body whose grip pulls; the state of the grip follows in the bytes.
 const GRASPS: u8 = 2;
-/// Number of bytes of an unreported event.
+/// Number of bytes in which an unreported event is saved.
 const EVENT_BYTES: usize = 17;
-/// Number of bytes of a local transform.
+/// Number of bytes in which a local transform is saved.
 const LOCAL_BYTES: usize = 40;
-/// Reason for refusing bytes that do not fit the definition.
-const OF_ANOTHER: &str = "is of another character";
+/// Error for bytes that do not fit the definition.
+const OF_ANOTHER: &str = "these bytes are of a character with another definition";
 
 impl Character {
     /// Writes all state that affects the future, without the definition.
@@ -76,7 +76,7 @@ impl Character {
     /// If the bytes are not a saved character of this definition and version; the character then does not change.
     pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
-            return Err(ReadError { at: 0, what: "is not a character of this version" });
+            return Err(ReadError { at: 0, what: "these bytes are not a character saved by this version" });
         }
         let def = self.def.clone();
         let (joints, count) = (def.rig.joints.len(), def.ragdoll.bodies.len());
@@ -192,7 +192,7 @@ fn load_activity(def: &CharacterDef, r: &mut Reader<'_>) -> Result<Activity, Rea
             let way = match r.u8()? {
                 0 => Way::ByClip(TrackId::from_bits(r.u64()?)),
                 1 => Way::Without(r.f32()?),
-                _ => return Err(r.error("unknown way of getting up")),
+                _ => return Err(r.error("unknown method of getting up")),
             };
             Activity::GettingUp(Rising { way, lean })
         }
@@ -201,7 +201,7 @@ fn load_activity(def: &CharacterDef, r: &mut Reader<'_>) -> Result<Activity, Rea
             let preparing = Preparing { stillness, get_up: r.u32()?, start: r.u32()?, seconds: r.f32()? };
             let get_up = def.moves().get_ups.get(preparing.get_up as usize);
             if get_up.is_none_or(|get_up| preparing.start as usize >= get_up.starts.len()) {
-                return Err(r.error("prepares for a clip that is not there"));
+                return Err(r.error("the character prepares for a clip that its definition does not contain"));
             }
             Activity::Preparing(preparing)
         }
@@ -210,7 +210,7 @@ fn load_activity(def: &CharacterDef, r: &mut Reader<'_>) -> Result<Activity, Rea
             let stumble = if r.bool()? { Some(Stumble::load(r)?) } else { None };
             Activity::Powered(Balance { stumble })
         }
-        _ => return Err(r.error("unknown state of a character")),
+        _ => return Err(r.error("unknown state of the character")),
     })
 }
 
@@ -221,7 +221,7 @@ fn load_detail(r: &mut Reader<'_>) -> Result<Option<Detail>, ReadError> {
         2 => Some(Detail::HitBodies),
         3 => Some(Detail::Full),
         u8::MAX => None,
-        _ => return Err(r.error("unknown detail of a character")),
+        _ => return Err(r.error("unknown level of detail of the character")),
     })
 }
 
@@ -372,7 +372,7 @@ fn load_physique(def: &CharacterDef, r: &mut Reader<'_>) -> Result<Physique, Rea
     }
     let fits = physique.lost.iter().all(|&(body, _)| (1..count).contains(&body));
     if !fits || !physique.lost.is_sorted_by(|a, b| a.0 < b.0) {
-        return Err(r.error("has lost what it never had"));
+        return Err(r.error("a detached body is not part of the definition"));
     }
     physique.parting = load_pairs(r)?;
     if !base.is_empty() {
@@ -468,7 +468,7 @@ impl Clearing {
         }
         let are_finite = |v: &Velocity| v.linear.is_finite() && v.angular.is_finite();
         if !way.is_finite() || !velocities.iter().all(are_finite) {
-            return Err(r.error("a way or a velocity that is not finite"));
+            return Err(r.error("a displacement or a velocity is not finite"));
         }
         Ok(Self { way, velocities })
     }
@@ -487,7 +487,7 @@ fn save_pose(w: &mut Writer, pose: &[LocalTransform]) {
 fn load_pose(r: &mut Reader<'_>, joints: usize) -> Result<Vec<LocalTransform>, ReadError> {
     let count = r.count(LOCAL_BYTES)?;
     if count != 0 && count != joints {
-        return Err(r.error("a pose of another rig"));
+        return Err(r.error("the pose has another number of joints than the rig"));
     }
     let mut pose = Vec::with_capacity(count);
     for _ in 0..count {

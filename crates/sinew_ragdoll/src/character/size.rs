@@ -8,13 +8,14 @@ use sinew_anim::{Animator, Garment, LocalTransform, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, max3};
 use sinew_physics::Yields;
 
-/// Number of times within a clip at which its limbs are measured.
+/// Number of times within a clip at which the distance of the bodies from the mover's axis is measured.
 const MOMENTS: u16 = 64;
 
 impl CharacterDef {
     /// Returns the radius of a mover that keeps all of the character's bodies on its side of a wall while the looped
     /// clip plays, metres: the largest distance of the bodies from the mover's vertical axis. 0 without such a clip.
-    /// The default mover is narrower, to pass doors: with root motion a hand is in a wall for part of each swing.
+    /// The default mover is narrower so that it passes doors; beside a wall a hand may therefore be in the wall for
+    /// part of each swing.
     pub fn swept_radius(&self) -> f32 {
         let Some(looped) = self.motions().looped else { return 0.0 };
         let duration = self.set().clip(self.clip(looped)).clip.duration();
@@ -35,14 +36,17 @@ impl CharacterDef {
         farthest
     }
 
-    /// Returns the same kind of character scaled by `factor` (1: unchanged): a child, a giant. Lengths and the speeds
-    /// of walk and springs scale with `factor`, masses and forces with its third power, torques with its fourth. One
-    /// definition serves all characters of that size.
+    /// Returns this definition scaled by `factor` (1: unchanged), for instance for a child or a giant. Lengths and the
+    /// speeds of walk and springs scale with `factor`, masses and forces with its third power, torques with its fourth.
+    /// All characters of that size can share the definition.
     ///
     /// # Panics
     /// If the factor is not above 0 and finite.
     pub fn scaled(&self, factor: f32) -> Self {
-        assert!(factor > 0.0 && factor < f32::INFINITY, "a factor of a size is above 0 and finite");
+        assert!(
+            factor > 0.0 && factor < f32::INFINITY,
+            "the scale factor must be positive and finite, not {factor}"
+        );
         let mut def = Self::new(self.rig.clone(), larger(&self.ragdoll, factor), &self.bind_model());
         def.set_springs(self.springs().source());
         let wider = |garment: &Garment| Garment {
@@ -53,7 +57,7 @@ impl CharacterDef {
                 distance: backstop.distance * factor,
                 radius: backstop.radius * factor,
             }),
-            // Keeps stretch and bend under the garment's own weight the same relative to its size.
+            // The garment then stretches and bends under its own weight by the same share of its size as before.
             stretching: garment.stretching * factor,
             shearing: garment.shearing * factor,
             bending: garment.bending * factor * factor * factor,
@@ -90,7 +94,7 @@ impl CharacterDef {
         if let Locomotion::Forward { speed } = &mut motions.locomotion {
             *speed *= factor;
         }
-        def.set_motions(motions).expect("its clips could be played before");
+        def.set_motions(motions).expect("scaling does not make a clip invalid");
         def
     }
 }

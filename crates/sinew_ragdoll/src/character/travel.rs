@@ -1,4 +1,5 @@
-//! Travelling looped clips: the path is extracted from the pose, so that each lap continues it.
+//! Looped clips that travel: their path is extracted from the poses as root motion, so that each lap continues where
+//! the last one ended.
 
 use super::CharacterDef;
 use crate::character::tuning::{OFF_ORIGIN, STAYS_TURNED, STAYS_WITHIN, STRAIGHT};
@@ -42,7 +43,7 @@ impl Lap {
     }
 }
 
-/// Returns the position of the pelvis over the ground, and its heading.
+/// Returns the position of the pelvis over the ground and its heading in a frame of the take, as a transform.
 fn stand(def: &CharacterDef, take: &Take, frame: usize) -> Transform {
     let (mut model, mut bodies) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, take.pose(frame), &Affine::IDENTITY, &mut model);

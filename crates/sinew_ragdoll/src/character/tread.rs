@@ -1,8 +1,10 @@
-//! Feet of a walking character: each foot stays planted where it landed, and swings over edges.
+//! Feet of a walking character: a foot on the ground stays planted where it landed, and a foot in the air is raised
+//! over edges.
 //!
 //! A planted foot keeps its position on the ground: the clip's displacement is removed, except for the roll from heel
-//! to ball. In the air the offset decays, and the foot takes the height of the ground at its landing point, predicted
-//! over [`LOOKS_AHEAD`]. Continuous ground is followed immediately, edges like a spring.
+//! to ball. In the air the offset decays, and the foot follows the height of the ground at its landing point, which is
+//! predicted over [`LOOKS_AHEAD`]. Feet follow continuous ground immediately, and edges like a critically damped
+//! spring.
 
 use super::CharacterDef;
 use super::feet::{Feet, Stand};
@@ -23,11 +25,11 @@ use sinew_physics::{BodyHit, World};
 /// State of a foot, apart from the height in [`Planting`](super::legs::Planting).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Tread {
-    /// Level offset of the foot from the clips' foot, world, metres.
+    /// Horizontal offset of the foot from its position in the clips, world axes, metres.
     pub offset: Vec3,
-    /// Target of `offset` in the air, so that the toes avoid walls.
+    /// Value that `offset` approaches in the air; it keeps the toes out of walls.
     pub home: Vec3,
-    /// Velocity at which the clips slide the foot over the ground, level, m/s.
+    /// Horizontal velocity at which the clips slide the foot over the ground, m/s.
     pub slip: Vec3,
     /// Ankle and ball of the clips' foot in the last step, world.
     pub points: [Vec3; 2],
@@ -38,7 +40,7 @@ pub(super) struct Tread {
     pub stands: bool,
 }
 
-/// Both feet, and the height of the character's transform in the last step, metres.
+/// State of both feet of a walking character.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Treads {
     pub feet: [Tread; 2],
@@ -55,16 +57,17 @@ struct Step {
     points: [Vec3; 2],
     /// Points below ankle and ball, and the tip of the toes, world.
     sole: [Vec3; 3],
-    /// Motion of the ball over the ground, level, metres.
+    /// Horizontal motion of the ball over the ground, metres.
     way: Vec3,
     /// Part of this motion that is not the clip's.
     slip: Vec3,
-    /// Height of the foot's lower end over the floor of the clip, metres.
+    /// Height of the foot's lowest point above the floor of the clip, metres.
     height: f32,
 }
 
 impl Tread {
-    /// Advances a planted or swinging foot; `size`: height of the whole body, metres.
+    /// Advances the foot by a step and decides whether it is planted. `size` is the height of the whole body, metres;
+    /// `grounded` is true while the character has ground.
     fn go_on(&mut self, step: &Step, size: f32, grounded: bool, dt: f32) {
         let speed = step.way.length() / dt;
         // A planted foot leaves the ground only at 1.5 times these limits.
@@ -98,7 +101,7 @@ impl Feet {
         let (def, figure, dt) = (stand.def, stand.figure, world.def().dt());
         let (place, level) = (figure.place, figure.place.translation.y);
         local_to_model(&def.rig, &figure.pose, &def.mapping().character_from_model(), model);
-        // Transform of the character if it moved exactly as its clips do.
+        // Transform that the character would have if it moved exactly as its clips do.
         let by_clips = figure.earlier.place * root_step(def, stand.animator);
         let is_new = self.treads.is_none();
         let mut treads = self.treads.unwrap_or(Treads { level, ..Treads::default() });
@@ -147,8 +150,9 @@ impl Feet {
         self.treads = Some(treads);
     }
 
-    /// Moves the feet of a pose of the clips, already at their heights, to their planted positions. `now` is the
-    /// transform of the character after `later` seconds. Returns the lowering of the pelvis, metres.
+    /// Moves the feet of a pose of the clips, which are already at their heights, by `offsets` to their planted
+    /// positions. `now` is the transform of the character after `later` seconds. Returns the lowering of the pelvis,
+    /// metres.
     pub(super) fn bring_home(
         &self,
         def: &CharacterDef,
@@ -170,7 +174,7 @@ impl Feet {
         hold_feet(&def.rig, legs.pelvis, &legs.chains, &ankles, [least, most], pose, model)
     }
 
-    /// Returns the level offsets of the feet from a pose of the clips, `later` seconds from now.
+    /// Returns the horizontal offsets of the feet from the clips' pose in `later` seconds, world axes, metres.
     pub(super) fn offsets(&self, later: f32) -> [Vec3; 2] {
         let Some(treads) = self.treads else { return [Vec3::ZERO; 2] };
         treads.feet.map(|tread| {
@@ -182,7 +186,8 @@ impl Feet {
         })
     }
 
-    /// Returns the heights of the feet over the floor of a clip of a character that will be at `now`.
+    /// Returns the predicted ground under the feet, relative to the floor of the clips, for a character that will be at
+    /// `now` in `later` seconds.
     pub(super) fn planting_at(&self, now: Transform, later: f32) -> super::legs::Planting {
         let mut planting = self.planting.ahead(later);
         if let Some(treads) = self.treads.filter(|treads| later > 0.0 && !treads.aloft) {
@@ -228,7 +233,8 @@ impl Stand<'_> {
         let under = |point: Vec3| {
             let over = Vec3::new(point.x, level, point.z);
             let hit = ground::found_below(world, over, FOOT_SEARCH, self.own)?;
-            // Light bodies are kicked, and limbs of others are stepped over.
+            // Light bodies are not ground, because feet kick them; limbs of others are not, because feet step over
+            // them.
             let is_firm = ground::is_firm(world, hit.body, LEAST_TREAD * self.def.ragdoll.total_mass);
             let over = hit.point.y - level;
             (is_firm && over <= FOOT_RANGE && over >= -TREAD_RANGE * size).then_some((over, hit))
@@ -271,9 +277,9 @@ impl Stand<'_> {
         Found { need, floor, under: heights, ahead, home }
     }
 
-    /// Returns the shift of a foot's landing position along the foot, metres: toes out of a wall, and the ball onto the
-    /// step under the heel, or the heel past the edge of this step. `heel`, `toes`: lengths behind the ankle and before
-    /// the ball.
+    /// Returns the displacement of a foot's landing position along the foot, metres. It moves the toes out of a wall,
+    /// and the ball onto the step under the heel or the heel past the edge of this step. `heel` and `toes` are the
+    /// lengths of the foot behind the ankle and in front of the ball.
     fn aside(
         &self,
         world: &World,

@@ -3,7 +3,7 @@
 //! Each constant has its unit, the effect of a larger and a smaller value, and the tests
 //! (`crates/sinew_ragdoll/tests/it`) that show it. Effects without a number are estimates.
 
-// character/animate.rs
+// character/gait.rs
 
 /// Largest speed at which the height of a character's origin follows the ground, m/s: a stair step takes a few frames.
 ///
@@ -17,16 +17,16 @@ pub(crate) const CLIMB_SPEED: f32 = 1.2;
 /// Larger: the limb hangs down. Smaller: the hit is not visible. Shown by the tests of `blows`.
 pub(crate) const FLINCH_TIME: f32 = 0.12;
 
-/// Distance from its clip within which a struck body has returned, metres.
+/// Distance of a struck body from its pose in the clip below which it counts as returned, metres.
 ///
 /// Larger: the limb jumps at the end of a flinch. Smaller: characters in a crowd flinch for longer. Shown by the scene
 /// `brawl`.
 pub(crate) const BACK_WITHIN: f32 = 0.04;
 
-/// Half-life within which the other bodies of a flinching character become keyed, seconds: less than any step, but not
-/// 0, so that their speed is bounded where the pose with planted feet ends.
+/// Half-life of the change to keyed drives for the bodies of a flinching character that were not struck, seconds. It is
+/// shorter than any step, but not 0, so that the bodies' speeds stay bounded where the pose with planted feet ends.
 ///
-/// Larger: the bodies hang from springs for a step. Smaller: the same. Shown by the scene `brawl`.
+/// Larger: the bodies hang from springs for a step. Smaller: no visible difference. Shown by the scene `brawl`.
 pub(crate) const FLINCH_KEYS: f32 = 1e-4;
 
 /// Half-life of a struck limb's return, seconds.
@@ -39,7 +39,8 @@ pub(crate) const FLINCH_HALF_LIFE: f32 = 0.08;
 /// Larger: the character kneels before its foot is down. Smaller: the legs stay stiff. Shown by the tests of `stumble`.
 pub(crate) const LEGS_WEAKEN: f32 = 0.2;
 
-/// Largest speed at which a led body yields to slow, hard pressure, m/s; it yields faster only to faster bodies.
+/// Speed up to which each struck body takes up the impulse that it stopped as a kinematic body, m/s. If the striker is
+/// faster, its speed applies instead.
 ///
 /// Larger: a foot that treads on a body kicks it away. Smaller: the foot stays pressed against the body. Shown by the
 /// tests of `grab`.
@@ -101,12 +102,12 @@ pub(crate) const GRIP_SHARE: f32 = 0.9;
 
 // character/rises.rs
 
-/// Distance between the points of a part at which the ground is searched, as a share of the height.
+/// Distance between the points of a part at which the ground is searched, as a share of the character's height.
 ///
 /// Larger: a hand over the edge of a step sinks into it. Smaller: more rays are cast. Shown by `brawl`.
 pub(crate) const PROBES_APART: f32 = 0.08;
 
-/// Height above a part of a rising character from which the ground is searched, as a share of the height.
+/// Height above a part of a rising character from which the ground is searched, as a share of the character's height.
 ///
 /// Larger: a body that leans against a crate is lifted onto it. Smaller: hands pass through stairs. Shown by `brawl` and
 /// `rising::arms_rise_over_a_step_beside_the_body`.
@@ -142,7 +143,7 @@ pub(crate) const LIMB_SOFTNESS: f32 = 0.08;
 /// the foot is flat. Shown by `feet::bodies_of_feet_stay_out_of_the_floor`.
 pub(crate) const BODY_BELOW_SKIN: f32 = 0.003;
 
-/// Downward component of a foot's up direction at which its body is not rotated.
+/// Downward component of a foot's up direction from which the foot's body is not rotated.
 ///
 /// Larger: feet of prone characters press their toes into the floor. Smaller: the box of a foot that points down enters
 /// the ground. Shown by the scene `brawl`.
@@ -158,13 +159,12 @@ pub(crate) const PARTED: f32 = 0.05;
 
 // character/feet.rs
 
-/// Natural frequency at which feet follow the ground, rad/s; critically damped. A stair step moves a leg as far as a
-/// transition of 0.2 s does.
+/// Natural frequency at which feet follow the ground, rad/s; critically damped.
 ///
 /// Larger: legs jerk. Smaller: feet sink in and float. Shown by the tests of `slopes`.
 pub(crate) const FEET_QUICKNESS: f32 = 12.0;
 
-/// Largest height difference of the ground on which a foot is placed, metres.
+/// Largest height of the ground above or below the clip's floor at which a foot is still placed on it, metres.
 ///
 /// Larger: legs reach into holes. Smaller: feet hang over steps. Shown by the tests of `slopes`.
 pub(crate) const FOOT_RANGE: f32 = 0.32;
@@ -174,9 +174,10 @@ pub(crate) const FOOT_RANGE: f32 = 0.32;
 /// Larger: feet float above the ground. Smaller: noise of meshes moves legs. Shown by the tests of `slopes`.
 pub(crate) const FOOT_FLOOR: f32 = 2e-3;
 
-/// Offset and speed below which a foot counts as returned to its clip, metres and m/s.
+/// Offset (metres) and speed (m/s) below which a foot counts as returned to its clip.
 ///
-/// Larger: the foot jumps at the end. Smaller: the correction runs without effect. Shown by the tests of `pops`.
+/// Larger: the foot jumps at the end. Smaller: the correction is computed for longer without visible effect. Shown by
+/// the tests of `pops`.
 pub(crate) const FOOT_HOME: f32 = 1e-5;
 
 /// Ratio of the time for standing up to the time for planting the feet.
@@ -201,7 +202,7 @@ pub(crate) const MOST_TILT: f32 = 0.6;
 pub(crate) const POWERED_TURNS: f32 = 3.5;
 
 /// Natural frequency at which a walking foot follows edges, rad/s; critically damped. The foot reaches the new height
-/// within half a swing, the time over which edges are detected.
+/// within half a swing; edges are detected that long in advance.
 ///
 /// Larger: feet jerk over edges. Smaller: feet are still too high when they land. Shown by the tests of `feet`.
 pub(crate) const TREAD_QUICKNESS: f32 = 25.0;
@@ -212,8 +213,9 @@ pub(crate) const TREAD_QUICKNESS: f32 = 25.0;
 /// Larger: the foot is raised for the step after. Smaller: edges are detected late. Shown by the tests of `feet`.
 pub(crate) const LOOKS_AHEAD: f32 = 0.12;
 
-/// Height of a foot's lower end over the clip's floor, over body height, from which the landing point is predicted, and
-/// the further height over which the prediction grows to its full time. A foot about to land does not get far.
+/// Heights of a foot's lowest point above the clip's floor, as shares of body height: the height above which the
+/// landing point is predicted, and the further height over which the prediction time grows to [`LOOKS_AHEAD`]. A foot
+/// that is about to land moves only a little further.
 ///
 /// Larger: edges are detected late. Smaller: the foot is raised for the step after. Shown by the tests of `feet`.
 pub(crate) const LANDS: [f32; 2] = [0.006, 0.017];
@@ -234,25 +236,26 @@ pub(crate) const TOES_OVER: f32 = 0.06;
 /// Larger: feet land beside their clips. Smaller: toes enter walls. Shown by the tests of `feet`.
 pub(crate) const TOES_CLEAR: f32 = 0.02;
 
-/// Largest depth of the ground below the mover to which a walking foot reaches, as a share of the body height. It
-/// exceeds one stair, because the mover is ahead of the foot by its radius.
+/// Largest depth of the ground below the clip's floor at which a walking foot is still placed on it, as a share of body
+/// height. It includes more than one stair, because the mover arrives there a radius ahead of the foot.
 ///
 /// Larger: legs reach into holes. Smaller: feet hang over steps. Shown by the tests of `feet`.
 pub(crate) const TREAD_RANGE: f32 = 0.34;
 
-/// Height of a foot's lower end over the clip's floor below which the foot stands, over body height.
+/// Height of a foot's lowest point above the clip's floor below which the foot may stand, as a share of body height.
 ///
 /// Larger: feet stick during a swing. Smaller: feet slide. Shown by the tests of `feet`.
 pub(crate) const STANCE_HEIGHT: f32 = 0.015;
 
-/// Speed of a clip's foot over the ground below which the foot stands, m/s.
+/// Speed of a clip's foot over the ground below which the foot may stand, m/s.
 ///
 /// Larger: feet stick during a swing. Smaller: feet slide with the clip. Shown by the tests of `feet`.
 pub(crate) const STANCE_SPEED: f32 = 0.8;
 
 /// Rate at which a foot in the air returns to its clip, 1/s.
 ///
-/// Larger: the foot flicks. Smaller: the foot lands beside its target. Shown by the tests of `feet`.
+/// Larger: the foot jerks when it leaves the ground. Smaller: the foot lands beside its target. Shown by the tests of
+/// `feet`.
 pub(crate) const RELEASES: f32 = 12.0;
 
 /// Rate at which the pelvis returns after it was lowered so that a leg reaches its planted foot, 1/s.
@@ -266,13 +269,13 @@ pub(crate) const PELVIS_RISES: f32 = 8.0;
 /// Larger: feet slide. Smaller: legs vibrate. Shown by the tests of `feet`.
 pub(crate) const SMALL_WAY: f32 = 4e-3;
 
-/// Least mass of a dynamic body that counts as ground, over the mass of the character.
+/// Least mass of a dynamic body that counts as ground, as a share of the character's mass.
 ///
 /// Larger: feet pass through crates. Smaller: feet step onto crates that they should kick. Shown by the tests of
 /// `in_world`.
 pub(crate) const LEAST_TREAD: f32 = 0.05;
 
-/// Largest distance of a planted foot from its position in the clip, over body height.
+/// Largest distance of a planted foot from its position in the clip, as a share of body height.
 ///
 /// Larger: legs twist. Smaller: feet slide. Shown by the tests of `feet`.
 pub(crate) const MOST_ASTRAY: f32 = 0.07;
@@ -336,12 +339,11 @@ pub(crate) const ARMS_ASIDE: f32 = 0.2;
 /// Larger: fingers sink into the floor. Smaller: soles float above it. Shown by the tests of `motions`.
 pub(crate) const LIMBS_SINK: f32 = 0.003;
 
-/// Height of a foot's step toward a clip, over the step's length; [`STEP_HEIGHT`] is the largest, as a share of the
-/// character's height.
+/// Ratio of the height to the length of a foot's step to its position in a clip; [`STEP_HEIGHT`] limits the height.
 ///
 /// Larger: the character stamps. Smaller: feet slide. Shown by the tests of `rising`.
 pub(crate) const STEP_OVER: f32 = 0.6;
-/// See [`STEP_OVER`].
+/// Largest height of a foot's step to its position in a clip, as a share of the character's height: see [`STEP_OVER`].
 pub(crate) const STEP_HEIGHT: f32 = 0.05;
 
 /// Cosine of the largest tilt of a foot that steps to its position in a clip.
@@ -356,15 +358,15 @@ pub(crate) const STRAIGHT_UP: f32 = 0.22;
 
 // character/grab.rs
 
-/// Distance of a held limb from its position in the clip beyond which its character follows, over body height.
+/// Distance of a held limb from its position in the clip beyond which its character follows, as a share of body height.
 ///
-/// Larger: the character leans before it steps. Smaller: it creeps after a hand that only touches it. Shown by the
-/// tests of `held`.
+/// Larger: the character leans before it steps. Smaller: it follows a hand that only touches it. Shown by the tests of
+/// `held`.
 pub(crate) const PULL_SLACK: f32 = 0.03;
 
 /// Upward speed at which a standing character leaves the ground, m/s.
 ///
-/// Larger: an updraft lifts the character late, and feet stick in a jump. Smaller: the mover finds the ground again.
+/// Larger: an updraft lifts the character late, and feet stick in a jump. Smaller: the mover snaps back to the ground.
 /// Shown by the tests of `blown`.
 pub(crate) const LIFTS_OFF: f32 = 0.5;
 
@@ -379,23 +381,24 @@ pub(crate) const PULL_RATE: f32 = 6.0;
 /// Shown by the tests of `held`.
 pub(crate) const PULL_SPEED: f32 = 2.0;
 
-/// Distance of a held limb from its position in the clip at which its character falls, over body height: about an arm's
-/// reach.
+/// Distance of a held limb from its position in the clip at which its character falls, as a share of body height: about
+/// an arm's reach.
 ///
 /// Larger: joints are torn apart. Smaller: every pull makes the character fall. Shown by the tests of `held`.
 pub(crate) const PULL_FELLS: f32 = 0.3;
 
 // character/get_up.rs
 
-/// Height of a pelvis over the ground up to which the body lies on this ground, over body height.
+/// Height of a pelvis above the ground up to which the body counts as lying on this ground, as a share of body height.
 ///
-/// Larger: carried bodies get up in the air. Smaller: a body that lies on others does not get up. Shown by the tests of
-/// `held`.
+/// Larger: bodies that are carried get up in the air. Smaller: a body that lies on others does not get up. Shown by the
+/// tests of `held`.
 pub(crate) const LIES_LOW: f32 = 0.3;
 
-/// Share of its weight that the static world must carry for a body to get up from an edge or a rail.
+/// Share of a body's weight that firm ground must carry so that the body gets up from an edge or a rail.
 ///
-/// Larger: the body stays on rails. Smaller: a carried body whose foot drags gets up. Shown by the tests of `held`.
+/// Larger: the body stays on rails. Smaller: a carried body gets up while its foot drags on the ground. Shown by the
+/// tests of `held`.
 pub(crate) const BORNE: f32 = 0.5;
 
 /// Time of the blend from the bodies' pose into a get-up clip, seconds.
@@ -406,7 +409,8 @@ pub(crate) const INTO_GET_UP: f32 = 0.35;
 /// Largest rotation of the pelvis, radians, and largest mean distance of the joints, as a share of the height, of a body
 /// at rest from the looped clip's pose for which it counts as standing and plays no get-up clip.
 ///
-/// Larger: a kneeling body floats up. Smaller: a standing body lies down to get up. Shown by the tests of `character`.
+/// Larger: a kneeling body rises without a get-up clip. Smaller: a standing body lies down to get up. Shown by the
+/// tests of `character`.
 pub(crate) const STANDS: [f32; 2] = [0.7, 0.14];
 
 /// Time of the blend from the bodies' pose into the looped clip, if no get-up clip exists, seconds.
@@ -424,8 +428,8 @@ pub(crate) const INTO_LOOP: f32 = 0.3;
 /// Larger: hands leave the ground. Smaller: the body swings upright. Shown by the tests of `slopes`.
 pub(crate) const STRAIGHTENS: f32 = 0.6;
 
-/// Net load from other bodies from which a lying body does not get up, as a share of its own weight: half the weight of
-/// an arm.
+/// Net load from other bodies above which a lying body does not get up, as a share of its own weight: about half the
+/// weight of an arm.
 ///
 /// Larger: the body gets up under another's limb and throws it off. Smaller: it waits for someone who only leans on it.
 /// Shown by `in_world::upper_of_two_fallen_characters_gets_up_first`.
@@ -443,7 +447,7 @@ pub(crate) const ON_TOP: f32 = 0.3;
 /// Larger: the body lies long under a crate that nobody removes. Smaller: it throws off slow loads. Shown as [`BEARS`].
 pub(crate) const BEARS_FOR: f32 = 5.0;
 
-/// Height of a mover over a lying body, as a share of the mover's own height.
+/// Initial height of the mover of a character that gets up, as a share of the mover's full height.
 ///
 /// Larger: the mover does not fit under obstacles. Shown by the tests of `in_world`.
 pub(crate) const LYING_MOVER: f32 = 0.0;
@@ -467,9 +471,10 @@ pub(crate) const HIGHEST_STEP: f32 = 0.45;
 /// Larger: it walks on air beyond an edge. Smaller: gaps in a floor fell it. Shown by the tests of `slopes`.
 pub(crate) const FOOTHOLD: f32 = 0.05;
 
-/// Depth to which the ground is searched, metres.
+/// Depth below a point to which the ground is searched, metres.
 ///
-/// Larger: searches over holes are slower. Smaller: high bodies have no ground. Shown by the tests of `character`.
+/// Larger: searches over holes are slower. Smaller: no ground is found for bodies high in the air. Shown by the tests
+/// of `character`.
 pub(crate) const GROUND_DEPTH: f32 = 100.0;
 
 /// Depth under a pelvis to which the supporting ground is searched, metres.
@@ -524,10 +529,10 @@ pub(crate) const SUDDEN: f32 = 70.0;
 
 /// Least speed of the whole character after a hit that makes it fall, m/s.
 ///
-/// Larger: the character withstands more. Smaller: a touch makes it fall. Shown by the tests of `in_world`.
+/// Larger: stronger hits are needed. Smaller: a touch makes the character fall. Shown by the tests of `in_world`.
 pub(crate) const FELLING_SPEED: f32 = 0.6;
 
-/// Radius of a mover over its height.
+/// Radius of a mover, as a share of its height.
 ///
 /// Larger: the mover does not fit through doors. Smaller: arms enter walls. Shown by the tests of `in_world`.
 pub(crate) const MOVER_RADIUS: f32 = 0.17;
@@ -547,7 +552,8 @@ pub(crate) const HAND_OVER_TIME: f32 = 1.0 / 1000.0;
 /// `held`.
 pub(crate) const PLACE_FOLLOWS: f32 = 8.0;
 
-/// Distance from that point below which the position stays unchanged, metres, so that a resting body keeps its pose.
+/// Distance of a limp character's position from the point under its pelvis below which the position stays unchanged,
+/// metres, so that a resting body keeps its pose.
 ///
 /// Larger: the position stays beside the body. Smaller: the pose of a resting body is computed in every step. Shown by
 /// the tests of `held`.
@@ -563,18 +569,18 @@ pub(crate) const LINGERS: f32 = 0.25;
 /// Larger: the body falls without resistance. Smaller: joints jerk at the hand-over. Shown by the tests of `hand_over`.
 pub(crate) const SLACKENS: f32 = 0.2;
 
-/// Speed below which a body lies still, m/s: 2 cm/s by the contract.
+/// Speed below which a body counts as still, m/s: 2 cm/s by the contract.
 ///
 /// Larger: the character gets up while its body slides. Smaller: it lies longer before it gets up. Shown by the tests
 /// of `character`.
 pub(crate) const STILL_LINEAR: f32 = 0.02;
 
-/// Angular speed below which a body lies still, rad/s: by the contract.
+/// Angular speed below which a body counts as still, rad/s, by the contract.
 ///
 /// As [`STILL_LINEAR`].
 pub(crate) const STILL_ANGULAR: f32 = 0.05;
 
-/// Time that all bodies must be still, seconds: by the contract.
+/// Time for which all bodies must be still before the character counts as at rest, seconds, by the contract.
 ///
 /// Larger: the character lies longer before it gets up. Smaller: it gets up at the turning point of a swing, while
 /// bodies still move. Shown by the tests of `character`.
@@ -598,7 +604,8 @@ pub(crate) const MIRROR_TOLERANCE: f32 = 0.03;
 /// Distance of a joint from its rest position beyond which it counts as translated, as a share of its distance from its
 /// parent.
 ///
-/// Larger: sliding joints stay behind in mirrored clips. Smaller: rounding counts. Shown by the tests of `character`.
+/// Larger: translated joints keep their rest position in mirrored clips. Smaller: rounding counts as a translation.
+/// Shown by the tests of `character`.
 pub(crate) const MOVED: f32 = 1e-3;
 
 // character/moves.rs
@@ -609,19 +616,19 @@ pub(crate) const MOVED: f32 = 1e-3;
 /// `character`.
 pub(crate) const MAY_BEGIN: f32 = 0.4;
 
-/// Uprightness of the pelvis, 1 upright, below which a get-up clip begins lying.
+/// Uprightness of the pelvis (1: upright) below which a get-up clip counts as one that begins lying.
 ///
-/// Larger: clips that begin sitting count as lying. Smaller: clips that begin on a side count as sitting. Shown by the
-/// tests of `rising`.
+/// Larger: clips that begin sitting count as lying. Smaller: clips that begin lying on a side count as sitting. Shown
+/// by the tests of `rising`.
 pub(crate) const BEGINS_LYING: f32 = 0.6;
 
-/// Height of the pelvis over its lowest in a clip that begins sitting up to which a get-up may begin, as a share of the
-/// character's height.
+/// Largest height of the pelvis above its lowest position at which a get-up may begin in a clip that begins sitting, as
+/// a share of the character's height.
 ///
-/// Larger: a lying body snaps to a crouch. Smaller: fewer poses to choose from. Shown by the tests of `rising`.
+/// Larger: a lying body snaps to a crouch. Smaller: fewer start poses are available. Shown by the tests of `rising`.
 pub(crate) const LOW_START: f32 = 0.05;
 
-/// Time between the times at which a get-up may begin in its clip, seconds.
+/// Interval between the clip times at which a get-up may begin, seconds.
 ///
 /// Larger: the start matches the lying pose less well. Smaller: the search is slower. Shown by the tests of
 /// `character`.
@@ -639,37 +646,38 @@ pub(crate) const MIRRORED_FRAME: f64 = 1.0 / 30.0;
 
 // character/pose_similarity.rs
 
-/// Weight of the end of a stick that represents the rotation of the trunk, over the mean body's share of the mass.
+/// Weight of each point at the end of a stick that represents the rotation of the trunk, relative to the mean weight of
+/// a body.
 ///
 /// Larger: limbs have no influence. Smaller: a body on its back gets up by the clip for its belly. Shown by the tests
 /// of `character`.
 pub(crate) const STICK_WEIGHT: f32 = 1.5;
 
-/// Length of a stick that represents the rotation of the trunk, over the height of the body.
+/// Length of a stick that represents the rotation of the trunk, as a share of body height.
 ///
 /// As [`STICK_WEIGHT`].
 pub(crate) const STICK: f32 = 0.2;
 
 // character/powered.rs
 
-/// Largest force of the pin of a powered body, over its weight.
+/// Largest force of the pin of a powered body that is neither pelvis nor leg, as a multiple of that body's weight.
 ///
 /// Larger: the body moves like a puppet on strings. Smaller: arms lag. Shown by the tests of `lives`.
 pub(crate) const PIN_HELPS: f32 = 1.0;
 
-/// Largest force of the pin of a powered leg, over the body's weight; a weaker pin lets feet drag.
+/// Largest force of the pin of a body of a powered leg, as a multiple of that body's weight.
 ///
 /// Larger: feet push obstacles. Smaller: they drag. Shown by the tests of `lives`.
 pub(crate) const PIN_STEPS: f32 = 4.0;
 
-/// Largest force of a powered pelvis' pin, over the total weight.
+/// Largest force of the pin of a powered pelvis, as a multiple of the total weight.
 ///
-/// Larger: nothing makes the character fall. Smaller: it sags. Shown by the tests of `lives`.
+/// Larger: no push makes the character fall. Smaller: it sags. Shown by the tests of `lives`.
 pub(crate) const PIN_BEARS: f32 = 1.0;
 
-/// Largest torque of a powered pelvis' pin over the total weight, metres.
+/// Largest torque of the pin of a powered pelvis, divided by the total weight, metres.
 ///
-/// Larger: nothing tips the character. Smaller: it leans. Shown by the tests of `lives`.
+/// Larger: no push tips the character over. Smaller: it leans. Shown by the tests of `lives`.
 pub(crate) const PIN_TURNS: f32 = 0.3;
 
 /// Half-life of a powered body's return to the clips, seconds.
@@ -677,7 +685,8 @@ pub(crate) const PIN_TURNS: f32 = 0.3;
 /// Larger: the body drifts back slowly. Smaller: it snaps back. Shown by the tests of `lives`.
 pub(crate) const POWERED_HALF_LIFE: f32 = 0.1;
 
-/// Distance of a powered pelvis from the pelvis of its clips, over its height, beyond which the character falls.
+/// Distance of a powered pelvis from the pelvis of its clips beyond which the character falls, as a share of body
+/// height.
 ///
 /// Larger: the character is dragged along. Smaller: a push makes it fall. Shown by the tests of `lives`.
 pub(crate) const FALLS_BEYOND: f32 = 0.3;
@@ -699,7 +708,7 @@ pub(crate) const TIME_TO_ROLL: f32 = 1.5;
 /// As [`TIME_TO_ROLL`].
 pub(crate) const TIME_TO_PULL: f32 = 0.5;
 
-/// Time until the rolling strength reaches half, seconds.
+/// Half-life with which the drives that prepare a get-up grow to their full strength, seconds.
 ///
 /// Larger: the trunk rolls late. Smaller: the trunk jerks. Shown by the tests of `character`.
 pub(crate) const PREPARES_HALF_LIFE: f32 = 0.1;
@@ -709,34 +718,35 @@ pub(crate) const PREPARES_HALF_LIFE: f32 = 0.1;
 /// Larger: the trunk flips. Smaller: the roll does not finish in time. Shown by the tests of `character`.
 pub(crate) const ROLL_HERTZ: f32 = 2.0;
 
-/// Largest rolling torque on each part of the trunk, over weight times height: 90 N·m for a man.
+/// Largest rolling torque on each part of the trunk, divided by the product of weight and height: 90 N·m for a man.
 ///
 /// Larger: the body throws off its load. Smaller: it stays lying. Shown by the tests of `character`.
 pub(crate) const ROLL_STRENGTH: f32 = 0.07;
 
 // character/stumble/mod.rs
 
-/// Time of a step that only returns a foot, seconds.
+/// Duration of a step that only returns a foot to its position in the clips, seconds.
 ///
 /// Larger: the foot returns slowly. Smaller: it snaps back. Shown by the tests of `stumble`.
 pub(crate) const HOME_TIME: f32 = 0.25;
 
-/// Share of a step until which its goal may change, 0 to 1.
+/// Share of a step's duration, from its start, within which its goal may change, 0 to 1.
 ///
-/// Larger: feet change direction late. Smaller: they land at the first prediction. Shown by the tests of `stumble`.
+/// Larger: feet change direction late. Smaller: they land at the point that was predicted first. Shown by the tests of
+/// `stumble`.
 pub(crate) const AIMS_UNTIL: f32 = 0.7;
 
-/// Height of a step over the height of the body.
+/// Height to which a step raises the foot, as a share of body height.
 ///
 /// Larger: the character marches. Smaller: feet drag. Shown by the tests of `stumble`.
 pub(crate) const LIFT: f32 = 0.05;
 
-/// Half the width of a sole over the height of the body.
+/// Half the width of a sole, as a share of body height.
 ///
 /// Larger: the character balances on edges. Smaller: it steps needlessly. Shown by the tests of `stumble`.
 pub(crate) const SOLE_RIM: f32 = 0.023;
 
-/// Largest distance by which the pelvis is lowered, over the height of the body.
+/// Largest distance by which the pelvis is lowered, as a share of body height.
 ///
 /// Larger: the character squats. Smaller: feet do not reach their goals. Shown by the tests of `stumble`.
 pub(crate) const PELVIS_SINKS: f32 = 0.12;
@@ -761,17 +771,17 @@ pub(crate) const CAUGHT_SPEED: f32 = 0.15;
 /// As [`CAUGHT_SPEED`].
 pub(crate) const CAUGHT_SHARE: f32 = 0.35;
 
-/// Landing error accepted for a second less of step time, metres per second.
+/// Reduction of the landing error that justifies a step that is one second shorter, m/s.
 ///
-/// Larger: steps are hasty. Smaller: steps come late. Shown by the tests of `stumble`.
+/// Larger: steps come late. Smaller: steps are hasty. Shown by the tests of `stumble`.
 pub(crate) const HURRY: f32 = 0.2;
 
-/// Landing error accepted for a metre less of reach beyond the standing foot, a ratio.
+/// Landing error that is accepted to avoid each metre by which the body exceeds the other foot's reach, dimensionless.
 ///
 /// Larger: steps are short. Smaller: the character does the splits. Shown by the tests of `stumble`.
 pub(crate) const STRAIN_COST: f32 = 3.0;
 
-/// Landing error from which a swinging foot is put down and the other foot steps, over body height.
+/// Landing error above which a swinging foot is put down and the other foot steps, as a share of body height.
 ///
 /// Larger: steps do not catch the character. Smaller: the character takes many tiny steps. Shown by the tests of
 /// `stumble`.
@@ -814,32 +824,33 @@ pub(crate) const DROP_TIME: f32 = 0.1;
 /// Larger: steps are long. Smaller: the character takes many tiny steps. Shown by the tests of `stumble`.
 pub(crate) const STRIDE_TIME: f32 = 0.28;
 
-/// Least lateral distance of the feet, over body height.
+/// Least lateral distance of the feet, as a share of body height.
 ///
 /// Larger: the character straddles. Smaller: feet cross. Shown by the tests of `stumble`.
 pub(crate) const FEET_APART: f32 = 0.08;
 
-/// Largest distance of a foot from the body, over the body's height.
+/// Largest horizontal distance of a foot from the body, as a share of body height.
 ///
 /// Larger: the character does the splits. Smaller: it falls where a step would catch it. Shown by the tests of
 /// `stumble`.
 pub(crate) const STEP_REACH: f32 = 0.3;
 
-/// Largest mean speed of a foot over body height, 1/s: a quick step of a person takes 0.2 s for 0.6 m.
+/// Largest mean speed of a foot, divided by body height, 1/s: a quick step of a person takes 0.2 s for 0.6 m.
 ///
 /// Larger: feet move too fast to see. Smaller: the character falls where a step would catch it. Shown by the tests of
 /// `stumble`.
 pub(crate) const FOOT_SPEED: f32 = 1.7;
 
-/// Lateral distance of a foot from the capture point, over body height.
+/// Lateral distance of a foot from the capture point, as a share of body height.
 ///
 /// Larger: the character sways from side to side. Smaller: it tips over its own foot. Shown by the tests of `stumble`.
 pub(crate) const STEP_OUT: f32 = 0.015;
 
-/// Lead of the foot over the capture point for braking, as a factor on the excess velocity over the pendulum's
-/// frequency.
+/// Distance of the foot's goal ahead of the body that brakes it, as a multiple of the excess velocity divided by the
+/// pendulum's frequency; 1 places the foot on the capture point.
 ///
-/// Larger: the character swings back. At 1 or below: it never stops. Shown by the tests of `stumble`.
+/// Larger: the character swings back. Smaller: it takes longer to stop, and at 1 or below it never stops. Shown by the
+/// tests of `stumble`.
 pub(crate) const BRAKES: f32 = 1.5;
 
 // character/travel.rs
@@ -854,27 +865,29 @@ pub(crate) const STAYS_WITHIN: f32 = 0.02;
 /// As [`STAYS_WITHIN`].
 pub(crate) const STAYS_TURNED: f32 = 0.02;
 
-/// Rotation of a lap below which the lap counts as straight, radians.
+/// Rotation of a clip from its start to its end below which its path counts as straight, radians.
 ///
 /// Larger: wide circles become lines. Smaller: rounding moves the centre of a circle. Shown by the tests of `travel`.
 pub(crate) const STRAIGHT: f32 = 1e-4;
 
-// character/walk.rs
+// character/gait.rs
 
-/// Rate at which the lift of a stair step decays, 1/s: the eye follows within a few frames.
+/// Rate at which the height difference from the mover decays after a stair step, 1/s; it disappears in a few frames.
 ///
 /// Larger: the character jerks. Smaller: its feet sink into the steps. Shown by the tests of `in_world`.
 pub(crate) const STEP_SETTLES: f32 = 14.0;
 
 /// Largest height difference of a shown character from its mover, metres.
 ///
-/// Larger: the character floats after a drop. Smaller: high steps jerk. Shown by the tests of `in_world`.
+/// Larger: the character floats after a drop. Smaller: the character jerks at high steps. Shown by the tests of
+/// `in_world`.
 pub(crate) const MOST_BESIDE: f32 = 0.4;
 
-/// Largest horizontal distance of a shown character from its mover, metres: a mover that begins inside a crate leaves
-/// the crate within a step.
+/// Largest horizontal distance of a shown character from its mover, metres. A mover that begins inside a crate leaves
+/// the crate within one step of the world.
 ///
-/// Larger: the character overlaps what its mover has left. Smaller: it jumps with its mover. Shown by the scene `brawl`.
+/// Larger: the character stays inside an obstacle that its mover has left. Smaller: it jumps with its mover. Shown by
+/// the scene `brawl`.
 pub(crate) const MOST_ASIDE: f32 = 0.8;
 
 /// Extra speed up to which a mover that is pushed aside takes its character along immediately, m/s; the character
@@ -894,7 +907,7 @@ pub(crate) const STEP_SLOPE: f32 = 1.2;
 /// Larger: legs jerk. Smaller: feet slide. Shown by the tests of `in_world`.
 pub(crate) const PACE_RATE: f32 = 10.0;
 
-/// Speed below which a character begins to stand, m/s.
+/// Speed below which a character starts to blend from the looped clip to idling, m/s.
 ///
 /// Larger: slow walks slide. Smaller: it walks on the spot. Shown by the tests of `in_world`.
 pub(crate) const STANDS_BELOW: f32 = 0.35;
@@ -905,7 +918,7 @@ pub(crate) const STANDS_BELOW: f32 = 0.35;
 /// tests of `in_world`.
 pub(crate) const STANDS_IN: f32 = 0.2;
 
-/// Largest acceleration of a character on its own feet, m/s²; shoes slip beyond it.
+/// Largest acceleration of a character on its own feet, m/s²; beyond it, shoes would slip.
 ///
 /// Larger: starts look weightless. Smaller: the character reacts late. Shown by the tests of `in_world`.
 pub(crate) const PICKS_UP: f32 = 5.0;
@@ -915,12 +928,12 @@ pub(crate) const PICKS_UP: f32 = 5.0;
 /// Larger: more weights are kept on the stack. Smaller: faster clips are left out. Shown by the tests of `paces`.
 pub(crate) const MOST_PACES: usize = 8;
 
-/// Largest playing speed of a clip, over the clip's own speed.
+/// Largest playing speed of a clip, as a multiple of the clip's own speed.
 ///
-/// Larger: legs whirl. Smaller: feet slide. Shown by the tests of `in_world`.
+/// Larger: legs move too fast to be plausible. Smaller: feet slide. Shown by the tests of `in_world`.
 pub(crate) const FASTEST_PACE: f32 = 2.0;
 
-// floor.rs
+// character/floor.rs
 
 /// Distance of a clip's lowest drawn point from the floor of the rest pose above which the clip has its own floor, as a
 /// share of the character's height.
@@ -929,7 +942,7 @@ pub(crate) const FASTEST_PACE: f32 = 2.0;
 /// Shown by the tests of `floors`.
 pub(crate) const OWN_FLOOR: f32 = 0.03;
 
-/// Penetration from which a character that goes limp is moved out, metres.
+/// Penetration of a static shape from which a character that goes limp is moved out, metres.
 ///
 /// Contacts push out half of it in 0.5 s. Larger: limbs stay in walls for seconds. Smaller: a foot that a clip puts
 /// into a stair lifts the whole character. Shown by the tests of `clear`.

@@ -1,4 +1,4 @@
-//! Keeps trunk, hands and feet of a character that its clips move out of walls beside it.
+//! Keeps trunk, hands and feet of an animated character out of the walls beside it.
 //!
 //! Rays from pelvis, hips and shoulders to the outermost points of each part find the wall, and the part moves out
 //! along the wall's horizontal normal.
@@ -23,8 +23,8 @@ impl WallOffsets {
         *self == Self::default()
     }
 
-    /// Follows the walls for a step; `model` is the pose without these offsets, in character space. `steps`: the feet
-    /// step onto obstacles lower than the mover's highest step.
+    /// Advances the displacements by a step; `model` is the pose without them, in character space. If `steps` is true,
+    /// the feet step onto obstacles that are lower than the mover's highest step, so these are not walls for them.
     pub fn follow(
         &mut self,
         def: &CharacterDef,
@@ -50,7 +50,7 @@ impl WallOffsets {
         }
     }
 
-    /// Displaces trunk and limbs of a character with the transform `place`.
+    /// Applies the displacements to the trunk and limbs of a pose; `place` is the character's transform.
     pub fn shift(
         &self,
         def: &CharacterDef,
@@ -65,7 +65,7 @@ impl WallOffsets {
     }
 }
 
-/// Returns rays along a part to its outermost points, as their two ends; all in the space of `model`.
+/// Returns rays from the inner end of a part to its outermost points, each as start and end in the space of `model`.
 fn rays<'a>(
     def: &CharacterDef,
     part: usize,

@@ -1,4 +1,4 @@
-//! Springs and garments that a character wears, over the pose that clips or bodies give it.
+//! Springs and garments of a character, which are added to the pose from clips or bodies.
 
 use super::CharacterDef;
 use super::figure::{Moment, Scratch};
@@ -18,7 +18,7 @@ pub(super) struct Wear {
     pub pose: Vec<LocalTransform>,
 }
 
-/// Character that wears springs and garments.
+/// State of a character on which its springs and garments depend.
 #[derive(Clone, Copy)]
 pub(super) struct Bearer<'a> {
     pub def: &'a CharacterDef,
@@ -46,8 +46,8 @@ impl Wear {
         Self { springs: SpringSwing::new(), garments: Worn::default(), pose: Vec::new() }
     }
 
-    /// Advances springs and garments by a step of the world, about the wearer's pose. `shown`: the time that was shown
-    /// last; `is_far`: springs rest; `mends`: cloth caught by clips is freed.
+    /// Advances springs and garments of a character by a step of the world. `shown` is the figure's pose as shown last.
+    /// If `is_far` is true, the springs do not swing. If `mends` is true, cloth that clips have caught is freed.
     pub fn go_on(
         &mut self,
         bearer: Bearer<'_>,
@@ -73,7 +73,8 @@ impl Wear {
         self.show_garments(def);
     }
 
-    /// Advances the springs. Those of a far character equal the pose, and resume with the shown pose's motion.
+    /// Advances the springs. Those of a far character follow the pose rigidly and later resume with the motion of the
+    /// shown pose.
     fn swing(
         &mut self,
         bearer: Bearer<'_>,
@@ -113,14 +114,15 @@ impl Wear {
         scratch.after = bodies;
     }
 
-    /// Adds the garments if the character has bodies to wear them, frees cloth caught by clips, and reads their pose.
-    /// Garment joints are shown below swinging springs; the cloth itself follows the pose without springs.
+    /// Adds the garments if the character has bodies in the world, frees cloth that clips have caught, and computes the
+    /// pose of the garments' joints. The shown garment joints follow their swinging parents; the cloth itself follows
+    /// the pose without springs.
     fn drape(&mut self, bearer: Bearer<'_>, mends: bool, world: &mut World) {
         self.dress(bearer, world);
         if self.garments.groups.is_empty() {
             return;
         }
-        // The sheet of a character getting up may be in the ground.
+        // The cloth of a character that gets up may be in the ground.
         if mends {
             bearer.wearer().mend(world, &self.garments.groups);
         }

@@ -30,7 +30,10 @@ impl Drives {
     ) {
         let count = self.drives.len();
         let all = [def.bodies.len(), ragdoll.bodies.len(), targets.len(), velocities.len()];
-        assert_eq!(all, [count; 4], "each body has a target and a velocity");
+        assert_eq!(
+            all, [count; 4],
+            "definition, ragdoll, targets and velocities must have one entry per drive"
+        );
         let (dt, recovery) = (world.def().dt(), self.recovery);
         for body in 0..count {
             let drive = &mut self.drives[body];
@@ -62,8 +65,8 @@ impl Drives {
         }
     }
 
-    /// Advances time without a world: blends continue and weakness decays. For drives that are recreated in a running
-    /// world, call this once per step taken so far, with the step length.
+    /// Advances the drives in time without a world: blends continue and weakness decays. For drives that are recreated
+    /// in a running world, call this once per step taken so far, with the step length.
     pub fn skip(&mut self, seconds: f32) {
         for drive in &mut self.drives {
             drive.pass(seconds, self.recovery);
@@ -80,7 +83,7 @@ impl Drives {
         }
     }
 
-    /// Like [`release`](Self::release), for some bodies, by index, and for the joints above them.
+    /// Like [`release`](Self::release), but only for the bodies with the indices `bodies` and the joints above them.
     pub(crate) fn release_bodies(&mut self, world: &mut World, ragdoll: &Ragdoll, bodies: &[usize]) {
         for &body in bodies {
             let (drive, id) = (&mut self.drives[body], ragdoll.bodies[body]);
@@ -175,8 +178,8 @@ impl Drives {
     }
 }
 
-/// Returns the pose that a keyed body reaches within a step on its way to a moving target, at the bounded speeds of a
-/// return: an obstacle may have kept it away.
+/// Returns the pose that a keyed body reaches within a step on its way to a moving target. An obstacle may have kept
+/// the body away, so its speed of return is bounded.
 fn nearer(world: &World, id: BodyId, target: Transform, velocity: Velocity) -> Transform {
     let (dt, now) = (world.def().dt(), world.transform(id));
     let left = target.translation - now.translation - velocity.linear * dt;
@@ -191,7 +194,7 @@ fn nearer(world: &World, id: BodyId, target: Transform, velocity: Velocity) -> T
     Transform::new(place, rotation)
 }
 
-/// Bounds the force of a pin on its way to keyed, and the speed at which its body approaches the target.
+/// Bounds the force of the pin of a body that changes to keyed, and the speed at which the body approaches its target.
 fn return_slowly(motor: &mut Motor, world: &World, id: BodyId) {
     let Gains::Position(Softness::Frequency { hertz, damping_ratio }) = motor.gains else { return };
     motor.max_force = min(motor.max_force, RETURN_ACCELERATION * world.mass(id).mass);
@@ -209,7 +212,7 @@ fn return_slowly(motor: &mut Motor, world: &World, id: BodyId) {
     motor.target = Transform::new(translation, (turned * from.rotation).normalize());
 }
 
-/// Returns the motor of a joint; `None` if it has no strength or no motion to drive.
+/// Returns the motor of a joint; `None` if the muscle has no strength, or the joint allows no motion.
 fn muscle(
     world: &World,
     joint: JointId,
@@ -234,8 +237,9 @@ fn muscle(
     })
 }
 
-/// Time by which a motor's target precedes the step's end. The target is constant within a step although the pose
-/// moves. It is therefore the pose at the mean of the substep start times, when motors are evaluated.
+/// Time by which a motor's target precedes the step's end. A motor's target is constant within a step although the pose
+/// moves. The target is therefore the pose at the mean of the times at which substeps start, because motors are
+/// evaluated then.
 struct Lag {
     /// Time before the step's end, seconds.
     seconds: f32,

@@ -1,4 +1,5 @@
-//! Springs as numbers that can be blended: stiffness and damping for a unit of mass, and largest forces and torques.
+//! Strengths of drives in a form that can be blended: stiffness and damping for a unit of mass, and largest forces and
+//! torques.
 
 use super::{Drive, DriveMode, Muscle, Pin};
 use crate::tuning::{KEYED_AFTER, LEAST_HERTZ};
@@ -68,7 +69,7 @@ impl Level {
 }
 
 impl Drive {
-    /// Advances by `dt` seconds. Returns true if the body is keyed from now on.
+    /// Advances the blend by `dt` seconds. Returns true if the body becomes keyed.
     pub(super) fn pass(&mut self, dt: f32, recovery: f32) -> bool {
         self.since += dt;
         let share = if self.half_life > 0.0 {

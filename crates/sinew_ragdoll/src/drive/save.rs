@@ -89,12 +89,16 @@ fn load_mode(r: &mut Reader<'_>) -> Result<DriveMode, ReadError> {
             )
         }
         3 => DriveMode::Keyed,
-        _ => return Err(r.error("unknown way to drive a body")),
+        _ => return Err(r.error("unknown drive mode of a body")),
     })
 }
 
 /// Reads a number that must be finite and not negative.
 fn sound(r: &mut Reader<'_>) -> Result<f32, ReadError> {
     let x = r.f32()?;
-    if (0.0..f32::INFINITY).contains(&x) { Ok(x) } else { Err(r.error("a number of a drive makes no sense")) }
+    if (0.0..f32::INFINITY).contains(&x) {
+        Ok(x)
+    } else {
+        Err(r.error("a number of a drive is negative or not finite"))
+    }
 }

@@ -34,7 +34,7 @@ pub(super) fn of_joint(
     (held, if inside { rate } else { Vec3::ZERO })
 }
 
-/// Returns an angle clamped to a range, and whether it was inside.
+/// Returns an angle clamped to a range, and true if the angle was inside the range.
 fn within(range: Option<Range>, angle: f32) -> (f32, bool) {
     let Some(range) = range else { return (angle, true) };
     let (middle, half) = (range.center(), 0.5 * (range.hi - range.lo));
@@ -43,7 +43,7 @@ fn within(range: Option<Range>, angle: f32) -> (f32, bool) {
     (middle + clamp(beyond, -room, room), beyond.abs() <= half)
 }
 
-/// Returns a rotation clamped to a limit, and whether it was inside.
+/// Returns a rotation clamped to a limit, and true if the rotation was inside the limit.
 fn clamped(limit: &SwingTwistLimit, wanted: Rotation) -> (Rotation, bool) {
     let (swing, twist) = SwingTwistLimit::angles(wanted);
     let angle = swing.length();

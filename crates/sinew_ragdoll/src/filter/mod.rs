@@ -165,7 +165,7 @@ fn reach(fit: &Fit) -> f32 {
     max(bounds.min.length(), bounds.max.length())
 }
 
-/// Returns true if a pair overlaps in poses in which it should not.
+/// Returns true if a pair overlaps in poses in which the bodies should be separate.
 fn needs_more_room(bones: &Bones, seen: &Seen, (a, b): (usize, usize)) -> bool {
     seen.bind > TOLERATED || seen.clips.unwrap_or(0.0) > A_FEW || is_never_apart(bones, seen, (a, b))
 }
@@ -177,7 +177,8 @@ fn is_never_apart(bones: &Bones, seen: &Seen, (a, b): (usize, usize)) -> bool {
     seen.limits >= ALWAYS || seen.clips.unwrap_or(0.0) > most
 }
 
-/// Applies a remedy of one side to the other, so that a slight asymmetry of the mesh does not make the ragdoll limp.
+/// Applies the remedies of one side of the body to the other, so that a slight asymmetry of the mesh does not make the
+/// ragdoll asymmetric.
 fn mirror_remedies(bones: &Bones, fits: &mut [Fit], poses: &Poses, report: &mut FilterReport) {
     for body in 0..fits.len() {
         let Some(twin) = bones.twin(body) else { continue };
@@ -217,7 +218,7 @@ fn remedy(
     (seen, poses): (Seen, &Poses),
 ) -> Remedy {
     let trunk = |bone: usize| bones.list[bone].part.is_trunk() || bones.list[bone].part == Part::Neck;
-    // Second neighbours within the trunk move over each other, independent of their sizes.
+    // Bodies of the trunk with one body between them overlap when the trunk bends, whatever their sizes.
     if bones.distance(a, b) <= 2
         && seen.bind > 0.0
         && (trunk(a) && trunk(b) || meets_at_pivot(bones, fits, a, b))

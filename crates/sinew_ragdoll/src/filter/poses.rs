@@ -56,7 +56,7 @@ pub struct Poses {
     pub of_clips: Vec<Vec<Transform>>,
 }
 
-/// Selection of the frames to test.
+/// Number of clip frames that are tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frames {
     /// All frames.
@@ -107,7 +107,7 @@ pub fn of_clips(
     let mut poses = Vec::new();
     let mut model = Vec::new();
     for take in takes.iter().take(most) {
-        assert_eq!(take.joints, rig.joints.len(), "takes of this rig");
+        assert_eq!(take.joints, rig.joints.len(), "the takes must belong to this rig");
         let frames = take.frames();
         let looks = usize::min(each, frames);
         for look in 0..looks {

@@ -63,7 +63,8 @@ pub fn box_frame(bones: &Bones, bone: usize, patch: &Patch) -> Mat3 {
     best.0
 }
 
-/// Returns axes with a level sole for a level foot: a box tilted by a few degrees would rest on an edge.
+/// Returns axes whose vertical is exact if the foot is nearly level, because a box that is tilted by a few degrees
+/// would rest on an edge.
 fn sole_frame(patch: &Patch) -> Option<Mat3> {
     let (_, axes) = patch.covariance.eigen();
     let along = axes * Vec3::X;

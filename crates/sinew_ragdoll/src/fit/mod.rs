@@ -35,12 +35,12 @@ use sinew_physics::{Hull, Shape};
 use std::sync::Arc;
 use surface::Share;
 
-/// Shape kinds of a ragdoll.
+/// Kinds of shapes that a build uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShapeChoice {
-    /// Only boxes.
+    /// Boxes for all bodies.
     Box,
-    /// Only capsules.
+    /// Capsules for all bodies.
     Capsule,
     /// Boxes for trunk, hands, feet and carried objects; capsules for limbs, neck and head, unless the other kind is
     /// clearly closer to the skin.
@@ -117,7 +117,8 @@ fn reconciled(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
     let frame = other.character_from_body;
     let axes = frame.rotation.to_mat3();
     let turned = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
-    // The mirror image of three axes is left-handed, so x is negated; all shapes except hulls are even in x.
+    // The mirror image of three axes is left-handed, so negate x. All shapes except hulls are symmetric in x, so this
+    // does not change them.
     let axes = Mat3::from_cols(-turned(axes.x_axis), turned(axes.y_axis), turned(axes.z_axis));
     let character_from_body = Transform::new(image(frame.translation), Rotation::from_mat3(&axes));
     let Some(shape) = with_x_turned(&other.shape) else { return own };
@@ -165,7 +166,7 @@ fn protruding(bones: &Bones, bone: usize, patch: &Patch, nearest: &Fit) -> Optio
     let far = if part == Part::Tail { SPIKED } else { PROTRUDING } * bones.size();
     let frame = solid::fit_box(bones, bone, patch);
     let within = solid::within_joints(bones, bone, patch, &frame);
-    // The spikes of a tail may be in line with it.
+    // The spikes of a tail may continue its direction.
     let within = |point: Vec3| if part == Part::Tail { point } else { within(point) };
     let out = |sample: &patch::Sample| {
         nearest.shape.signed_distance(&nearest.character_from_body, within(sample.point)).0
@@ -246,12 +247,11 @@ fn clip_at_joints(bones: &Bones, bone: usize, origin: Vec3, axis: Vec3, lo: f32,
     let (mut new_lo, mut new_hi) =
         (own.map_or(lo, |own| max(lo, own - past)), next.map_or(hi, |next| min(hi, next + past)));
     if bones.is_central(bone) && bones.list[bone].part.is_trunk() {
-        // In the range where weights fade from one bone to the next, neither bone owns the skin, so the gap to the
-        // joint is closed.
+        // Where weights fade from one bone to the next, neither bone owns the skin, so extend the shape to the joint.
         new_lo = own.map_or(new_lo, |own| min(new_lo, own));
         new_hi = next.map_or(new_hi, |next| max(new_hi, next));
     }
-    // If the rig's pivots are outside its skin, nothing remains, and the extent of the skin is used.
+    // If the rig's pivots are outside its skin, nothing remains of the extent. Then use the extent of the skin.
     if new_hi - new_lo > 0.2 * (hi - lo) { (new_lo, new_hi) } else { (lo, hi) }
 }
 

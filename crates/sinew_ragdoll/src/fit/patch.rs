@@ -1,4 +1,4 @@
-//! The piece of skin to which one shape is fitted: even samples and second moments.
+//! The piece of skin to which one shape is fitted: evenly spaced samples and second moments.
 //!
 //! ```
 //! use sinew_math::Vec3;
@@ -148,14 +148,15 @@ impl Patch {
         self.center.x = x;
     }
 
-    /// Returns the values of `f` below which the given shares of the area are.
+    /// Returns the area-weighted quantiles of `f` over the samples, one for each of the given shares.
     pub fn quantiles<const N: usize>(&self, shares: [f32; N], f: impl Fn(Vec3) -> f32) -> [f32; N] {
         let mut values: Vec<_> = self.samples.iter().map(|s| (f(s.point), s.area)).collect();
         quantiles_of(&mut values, shares)
     }
 }
 
-/// Returns the values below which the given shares of the weight are. `values` (value, weight) gets sorted.
+/// Returns the weighted quantiles of `values`, pairs of value and weight, one for each of the given shares. Sorts
+/// `values`.
 ///
 /// # Panics
 /// If `values` is empty.

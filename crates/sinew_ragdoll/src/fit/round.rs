@@ -9,17 +9,17 @@ use crate::tuning::{BALL, STEEPEST};
 use sinew_math::{Rotation, Transform, Vec3, clamp, max, min};
 use sinew_physics::Shape;
 
-/// Distances from a limb's end, in shares of its length, between which the radius of this end is measured.
+/// Range of distances from a limb's end, as shares of its length, in which the radius of this end is measured.
 const NEAR_END: [f32; 2] = [0.1, 0.4];
 
-/// Returns the capsule nearest to the skin, over all candidate axes.
+/// Returns the capsule that is nearest to the skin, of those along all candidate axes.
 pub(super) fn fit_capsule(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     let axis = long_axis(bones, bone, patch);
     let along = capsule_along(bones, bone, patch, axis);
     if bones.list[bone].part != Part::Head {
         return along;
     }
-    // A head may be longest from chin to crown or from nose to nape; its bone points along neither.
+    // A head may be longest from chin to crown or from nose to nape, and its bone may point along neither.
     [Vec3::Y, Vec3::Z].into_iter().map(|axis| capsule_along(bones, bone, patch, axis)).fold(along, nearer)
 }
 
@@ -53,7 +53,7 @@ fn capsule_along(bones: &Bones, bone: usize, patch: &Patch, axis: Vec3) -> Fit {
     if thin.error < 0.95 * thick.error { thin } else { thick }
 }
 
-/// Returns the capsule, or a ball if it is nearly one.
+/// Returns the capsule, or a ball if the capsule is nearly a ball.
 pub(super) fn rounded(fit: Fit) -> Fit {
     match fit.shape {
         Shape::Capsule { half_height, radius } if half_height < BALL * radius => {
@@ -63,7 +63,8 @@ pub(super) fn rounded(fit: Fit) -> Fit {
     }
 }
 
-/// Returns the capsule with a separate radius at each end; `None` for a ball, and without skin near an end.
+/// Returns a tapered capsule, with a radius of its own at each end; `None` for a ball, or if there is no skin near an
+/// end.
 pub(super) fn taper(capsule: &Fit, patch: &Patch) -> Option<Fit> {
     let Shape::Capsule { half_height, radius } = capsule.shape else { return None };
     if half_height < BALL * radius {

@@ -19,7 +19,7 @@ pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
         direction.y = 0.0;
     }
     let axes = with_y(box_frame(bones, bone, patch), direction);
-    // The last hundredth of a sword is its point, so the whole length of props is used.
+    // Use the whole length of props, because the last hundredth of a sword is its point.
     let shares = if bones.list[bone].is_prop { [0.0, 1.0] } else { [0.01, 0.99] };
     let extent = |axis: Vec3| patch.quantiles(shares, |p| (p - patch.center).dot(axis));
     let ([x_lo, x_hi], [z_lo, z_hi]) = (extent(axes.x_axis), extent(axes.z_axis));
@@ -40,7 +40,7 @@ pub(super) fn fit_hull(cuboid: &Fit, patch: &Patch) -> Option<Fit> {
     hull_of(cuboid, patch, |point| max3(min3(point, half), -half))
 }
 
-/// Like [`fit_hull`], around all of the skin; `within` moves each point first (character space).
+/// Like [`fit_hull`], but not clipped to the box; `within` first moves each point of the skin, in character space.
 pub(super) fn fit_whole_hull(cuboid: &Fit, patch: &Patch, within: impl Fn(Vec3) -> Vec3) -> Option<Fit> {
     let frame = cuboid.character_from_body;
     hull_of(cuboid, patch, |point| frame.inverse_point(within(frame.point(point))))

@@ -121,7 +121,7 @@ pub fn share_surface(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<Vec<Sh
     skinned
 }
 
-/// Returns all triangles that move with a body, character space at the bind pose, metres.
+/// Returns all triangles that move with a body, in character space at the bind pose, metres.
 pub fn skin_triangles(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<[Vec3; 3]> {
     let owner = owners(rig, bones);
     let mut all = Vec::new();
@@ -151,7 +151,7 @@ fn triangles<'a>(
     })
 }
 
-/// Index of a bone, and its weights on the corners of a triangle.
+/// Index of a bone, and its weights at the corners of a triangle.
 type Pull = (usize, [f32; 3]);
 
 /// Subdivides triangles moved by several bones until no side is longer than `finest` (metres), so that each bone gets
@@ -191,7 +191,8 @@ fn cuts_of(corners: &[Vec3; 3], finest: f32) -> usize {
     clamp(longest / finest + 0.999, 1.0, MOST_CUTS) as usize
 }
 
-/// Calls `f` with the corners of the `cuts`² equal parts of a triangle, in coordinates along its first two sides.
+/// Cuts a triangle into `cuts`² equal parts and calls `f` with the corners of each, in coordinates along the triangle's
+/// first two sides.
 pub fn for_each_part(cuts: usize, mut f: impl FnMut([[f32; 2]; 3])) {
     let step = 1.0 / cuts as f32;
     for i in 0..cuts {

@@ -36,7 +36,8 @@ pub(super) fn backings(
         let place = group.particles[particle].position;
         let (body, outward) = nearest(ragdoll, passed, place)?;
         let normal = direction(normal)?;
-        // The winding of a sheet is arbitrary, and a lining faces the other way.
+        // Take the direction from the body, because the winding of a sheet is arbitrary and a lining faces the other
+        // way.
         let outward = if normal.dot(outward) < 0.0 { -normal } else { normal };
         let center = place - outward * (backstop.distance + backstop.radius + garment.radius);
         let center = ragdoll.bodies[body].character_from_body.inverse_point(center);

@@ -22,8 +22,8 @@ pub(super) struct Grid {
     pub closed: bool,
 }
 
-/// Largest number of lines between two columns, and of rows. A spacing that needs more lines was made for a character
-/// of another size.
+/// Largest number of lines between two columns, and of rows. If a spacing needs more lines, it was meant for a
+/// character of another size.
 const MOST_SPLITS: usize = 16;
 const MOST_ROWS: usize = 64;
 

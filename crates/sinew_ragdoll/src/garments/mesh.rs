@@ -85,7 +85,7 @@ impl Grain {
             grain.frame_from_bone = back * bone;
             grain.moved_out = back * grain.moved_out;
         } else {
-            // Without a frame at rest the particle moves and does not rotate.
+            // If the particle has no frame at rest, its joint moves but does not rotate.
             grain.around.clear();
             grain.moved_out = Vec3::ZERO;
         }
@@ -173,7 +173,7 @@ impl Weave<'_> {
         };
         let mut in_cell = vec![false; self.mesh.faces.len()];
         for (&edge, faces) in beside.iter().filter(|(edge, faces)| is_diagonal(**edge, faces)) {
-            debug_assert!(edge[0] < edge[1], "links have the smaller first");
+            debug_assert!(edge[0] < edge[1], "the smaller index of an edge must come first");
             faces.iter().for_each(|&face| in_cell[face] = true);
         }
         let shear = 0.5 * self.garment.shearing;
@@ -186,7 +186,7 @@ impl Weave<'_> {
                 edge,
                 match faces.as_slice() {
                     _ if diagonal => shear,
-                    // An edge without a triangle is also a thread.
+                    // An edge that belongs to no triangle is also a thread.
                     [] => self.garment.stretching,
                     _ => self.garment.stretching * area / (length * length),
                 },

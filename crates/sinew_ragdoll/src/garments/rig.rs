@@ -292,7 +292,7 @@ impl GarmentRig {
         self.sheets.iter().map(|sheet| sheet.group.particles.len())
     }
 
-    /// Returns true if there is no garment to wear.
+    /// Returns true if the rig has no garments.
     pub fn is_empty(&self) -> bool {
         self.sheets.is_empty()
     }

@@ -29,7 +29,7 @@ use sinew_math::limits::{hinge_angle, wrap};
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min, trig};
 use sinew_physics::JointKind;
 
-/// Factors on the observed swing, tried from the largest on.
+/// Factors on the observed swing, in the order in which they are tried.
 const SWING_FACTORS: [f32; 4] = [1.15, 1.1, 1.05, 1.0];
 /// Number of frames per added copy of the bind pose: the copies are twice the share that the coverage excludes, so that
 /// the limits contain the bind pose.
@@ -120,7 +120,7 @@ fn hinged(
 ) -> RagdollJointDef {
     let onto_axis = Rotation::from_arc(Vec3::X, hinge.axis);
     let (parent, child) = (learned.center * onto_axis, onto_axis);
-    // A hinge has only its angle; the rest of the bind rotation becomes part of the frame.
+    // A hinge rotates only about its axis; the remaining bind rotation becomes part of the frame.
     let seen = parent.inverse() * bind * child;
     let (swing, twist) = seen.swing_twist(Vec3::X);
     let range = wider(hinge.range, TWIST_MARGIN);
@@ -167,7 +167,7 @@ impl Cone<'_> {
         turned(self.joint, parent, child, kind)
     }
 
-    /// Returns the widest learned cone that exceeds the anatomical one no further than the clips do. The clips' excess
+    /// Returns the widest learned cone that exceeds the anatomical one by no more than the clips do. The clips' excess
     /// is that of their frames or of the cone around these frames without a margin, whichever is larger.
     fn limit(&self, learned: &LearnedLimit, turns: &[Rotation]) -> SwingTwistLimit {
         let mut beyond: Vec<f32> = turns.iter().map(|&turn| self.beyond(turn)).collect();

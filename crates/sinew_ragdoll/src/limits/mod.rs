@@ -85,7 +85,7 @@ pub fn joints(bones: &Bones, fits: &[Fit], total_mass: f32) -> Vec<JointPlan> {
         .collect()
 }
 
-/// A joint in the bind pose, in character axes: first the parent, then the child.
+/// A joint in the bind pose, in character axes. Arrays contain the parent's value, then the child's.
 struct Seen {
     side: Side,
     /// Rotations from the anatomical pose to the bind pose.
@@ -107,7 +107,7 @@ impl Seen {
             }
             Motion::Universal(cone) => {
                 let [parent, child] = self.cone_frames(entry.axes, cone);
-                // The bind pose's twist is the joint's zero: a universal joint has no twist.
+                // A universal joint has no twist, so the twist of the bind pose is its zero.
                 let (_, twist) = (parent.inverse() * child).swing_twist(Vec3::X);
                 let frames = [parent, child * twist.inverse()];
                 let joint = frames[0].inverse() * frames[1];
@@ -156,7 +156,7 @@ impl Seen {
         [self.turned[0] * basis * center, self.turned[1] * basis]
     }
 
-    /// Returns the sign of the side: −1 on the right, because swing about z and twist change sign there.
+    /// Returns −1 on the right side, where swing about z and twist change sign, and otherwise 1.
     fn mirror(&self) -> f32 {
         if self.side == Side::Right { -1.0 } else { 1.0 }
     }

@@ -44,6 +44,6 @@ pub fn random_turn(kind: JointKind, random: &mut Random, share: f32) -> Rotation
             Rotation::from_axis_angle(Vec3::X, within(random, limit.unwrap_or(FREE)))
         }
         JointKind::Fixed => Rotation::IDENTITY,
-        kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
+        kind => unreachable!("a ragdoll has only joints that rotate or are fixed, not {kind:?}"),
     }
 }

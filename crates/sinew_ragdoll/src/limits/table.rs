@@ -46,13 +46,13 @@ pub struct Cone {
 /// y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
-    /// x up, y to the left: forward is +y.
+    /// x up, y to the left: bending forward is +y.
     Upright,
-    /// x down, y to the right: forward (flexion) is +y, inward is +z, inward rotation is +x.
+    /// x down, y to the right: flexion (forward) is +y, adduction (inward) is +z, inward rotation is +x.
     Hanging,
-    /// x down, y back: toward the palm is +y, toward the little finger is +z.
+    /// x down, y back: bending toward the palm is +y, toward the little finger +z.
     Palm,
-    /// x down the shank, y to the left: plantar flexion is +y, sole outward is +z.
+    /// x down the shank, y to the left: plantar flexion is +y, turning the sole outward is +z.
     Sole,
     /// Directions of the bones in the bind pose.
     Bind,
@@ -105,7 +105,7 @@ pub fn entry(bones: &Bones, bone: usize) -> Entry {
     match part {
         Part::Spine => spine(count(bones, &[Part::Spine])),
         Part::Neck | Part::Head => neck(count(bones, &[Part::Neck, Part::Head])),
-        // A hinge between bones that are not a limb's two halves would have a meaningless axis.
+        // Use a hinge only between the two halves of a limb; between other bones its axis would be meaningless.
         Part::Forearm if parent != Some(Part::UpperArm) => LIMB,
         Part::Shank if parent != Some(Part::Thigh) => LIMB,
         Part::Toes if parent != Some(Part::Foot) => LIMB,

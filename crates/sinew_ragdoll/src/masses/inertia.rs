@@ -21,7 +21,7 @@ pub fn conditioned(principal: Vec3) -> Vec3 {
     i + Vec3::new(y + z, x + z, x + y)
 }
 
-/// Returns `p`, moved to within nine tenths of the shape if it is farther out.
+/// Returns `p`, clamped to nine tenths of a box that the shape contains.
 pub fn inside(shape: &Shape, p: Vec3) -> Vec3 {
     let reach = match *shape {
         Shape::Box { half_extents } => half_extents,

@@ -35,7 +35,7 @@ pub struct MassOptions {
     /// Mass of the skin's enclosed volume, kg, for creatures. If the mass is unknown or does not match the shapes, the
     /// shapes determine the mass.
     pub enclosed: Option<f32>,
-    /// Least and largest mass, kg, between which a creature's mass is kept if `total` is `None`.
+    /// Least and largest mass of a creature, kg, to which its mass is limited if `total` is `None`.
     pub usual: Option<[f32; 2]>,
 }
 
@@ -85,7 +85,7 @@ fn human_shares(bones: &Bones, table: &Table) -> Vec<f32> {
     let mut shares = vec![0.0; bones.list.len()];
     let carrier = |chain: &[Part], side: Side| {
         chain.iter().find_map(|&part| {
-            // The trunk has no sides; its uppermost bone carries arms and head.
+            // Parts of the trunk have no side. The uppermost bone of the trunk carries arms and head.
             let side = if part.is_trunk() && part != Part::Clavicle { Side::Middle } else { side };
             (0..bones.list.len()).rev().find(|&b| bones.list[b].part == part && bones.list[b].side == side)
         })
@@ -179,7 +179,7 @@ fn trunk_between(table: &Table, lo: f32, hi: f32) -> f32 {
     share
 }
 
-/// Gives a small share to each bone that no human has (tails, ears, capes, fingers).
+/// Gives a small share to each bone without a segment in the table (tails, ears, capes, fingers).
 fn share_others(bones: &Bones, shares: &mut [f32]) {
     for (bone, share) in bones.list.iter().zip(shares) {
         if matches!(bone.part, Part::Tail | Part::Limb) {

@@ -14,7 +14,7 @@ use crate::tuning::{CLOSED, FLESH, MACHINE};
 use sinew_anim::Rig;
 use sinew_math::{Vec3, clamp, max, max3, min, min3};
 
-/// Number of sample lines per side of the grid across each axis.
+/// Number of sample lines along each side of the grid that is perpendicular to an axis.
 const LINES: usize = 64;
 /// Position of the lines in their cells, as shares of a cell: off the centre, where symmetric meshes have their edges.
 const OFF_MIDDLE: [f32; 2] = [0.513_7, 0.487_1];

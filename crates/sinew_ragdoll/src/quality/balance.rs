@@ -43,7 +43,8 @@ impl Balance {
         (!skin.sample.is_empty()).then_some(Self { skin, directions })
     }
 
-    /// Returns the horizontal distance by which the centre of mass is outside the support, metres; at most 0 above it.
+    /// Returns the horizontal distance by which the centre of mass is outside the support, metres; 0 or negative if it
+    /// is above the support.
     fn lean(&self, def: &CharacterDef, pose: &[LocalTransform]) -> f32 {
         let (mut model, mut palette, mut bodies) = (Vec::new(), Vec::new(), Vec::new());
         local_to_model(&def.rig, pose, &Affine::IDENTITY, &mut model);

@@ -15,11 +15,12 @@ use sinew_math::{Affine, Transform, Vec3, max, min, trig};
 use sinew_physics::ray::Ray;
 use sinew_physics::{BodyKind, OverlapWith, PenetrationOf, Probe, Shape, World, WorldDef};
 
-/// Number of joints with skin from which a single body is not a ragdoll: few one-part characters have as many.
+/// Number of joints with skin from which a ragdoll of a single body is a fault. Few characters of one part have as
+/// many.
 const MANY_JOINTS: usize = 8;
 /// Number of frames between two checks of an animated character.
 const INSIDE_EVERY: usize = 5;
-/// Number of joints with skin up to which a single body is correct.
+/// Number of joints with skin up to which a ragdoll of a single body is correct.
 const FEW_JOINTS: usize = 2;
 
 /// A fault, and the best verdict that it allows.
@@ -43,7 +44,8 @@ impl Fault {
     }
 }
 
-/// Returns faults independent of the fall: a rig of many joints with one body, left and right on the same side.
+/// Returns the faults of a definition that no fall is needed to find: a single body for a rig of many joints, and left
+/// and right limbs on the same side.
 ///
 /// # Panics
 /// If the definition has no body.
@@ -127,7 +129,7 @@ fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     };
     let by_clip = baked.frames.iter().find(|frame| frame.state == State::Animated)?;
     let by_clip = size(&by_clip.pose);
-    // The size of the previous pose fades out in the first frames, so the frame farthest from it counts.
+    // The size of the previous pose fades out in the first frames, so use the frame whose size differs most from it.
     let rising = baked.frames.iter().filter(|frame| frame.state == State::GettingUp);
     let times = rising.map(|frame| size(&frame.pose) / by_clip);
     let off = |times: f32| max(times, 1.0 / times);
@@ -220,7 +222,7 @@ fn inside(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
 /// Returns a fault if clips move a character over nothing: beyond an edge of its ground, or high above ground from the
 /// start.
 fn in_air(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
-    // Keyframed bodies may carry it.
+    // Keyframed bodies may carry the character.
     if !input.movers.is_empty() || !input.bodies.iter().any(|body| body.kind == BodyKind::Static) {
         return None;
     }
@@ -291,8 +293,9 @@ fn never_still(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
 }
 
 /// Returns the input of a bake with the weakest [push](BakeInput::topple) after which the character lies flat: forward,
-/// or sideways for a creature on its legs, also on folded ones. If it stays upright or on its legs and no push lays it
-/// flat, returns the weakest that fells it. `None` if it lies flat without a push, or no push helps.
+/// or sideways for a creature on its legs, also on folded ones. If the character stays upright or on its legs and lies
+/// flat after none of the pushes, returns the weakest push that makes it fall. `None` if it lies flat without a push,
+/// or if no push makes it fall.
 ///
 /// # Panics
 /// If the bake does not belong to the input.
@@ -323,7 +326,7 @@ pub fn toppled<'a>(input: &BakeInput<'a>, baked: &Baked) -> Option<BakeInput<'a>
     fallen.filter(|_| stays_standing(input, baked).is_some())
 }
 
-/// Returns a fault if a limp body does not fall.
+/// Returns a fault if a character that goes limp does not fall.
 fn stays_standing(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     stays_upright(input, baked).or_else(|| stays_on_legs(input, baked))
 }
@@ -421,7 +424,7 @@ fn props_itself(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     })
 }
 
-/// Option of `bake` that fells a character that stays upright.
+/// Option of `bake` that pushes over a character that stays upright.
 fn stronger(input: &BakeInput<'_>) -> &'static str {
     if input.hits.is_empty() { "--hit" } else { "a stronger --hit" }
 }

@@ -13,7 +13,7 @@ use std::sync::{Mutex, PoisonError};
 const SECONDS: f32 = 10.0;
 /// Share of a joint's range that a random pose uses.
 const POSE_SHARE: f32 = 0.6;
-/// Number of tries to find a pose in which no two bodies overlap.
+/// Number of attempts to find a random pose in which no two bodies overlap.
 const TRIES: u32 = 16;
 
 /// Result of [`gate`].
@@ -21,7 +21,7 @@ const TRIES: u32 = 16;
 pub struct GateReport {
     /// Number of falls.
     pub spawns: usize,
-    /// Number of falls by verdict: good, usable, bad.
+    /// Number of falls with each verdict: good, usable, bad.
     pub verdicts: [usize; 3],
     /// The worst value of each metric.
     pub worst: FallQuality,
@@ -186,7 +186,8 @@ pub fn random_fall(def: &RagdollDef, seed: u64) -> FallQuality {
     measure(&mut world, def, &ragdoll, SECONDS)
 }
 
-/// Returns a floor with nothing, a slope, stairs, or scattered boxes: static bodies, at most 1.1 m high except slopes.
+/// Returns the static bodies of a terrain: a bare floor, or a floor with a slope, stairs or scattered boxes. All except
+/// slopes are at most 1.1 m high.
 pub fn random_ground(random: &mut Random) -> Vec<BodyDef> {
     let fixed = |position: Vec3, rotation: Rotation, shape: Shape| BodyDef {
         kind: BodyKind::Static,

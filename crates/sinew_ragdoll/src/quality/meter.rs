@@ -33,7 +33,7 @@ impl QualityMeter {
     /// Reserves memory for falls of about `seconds` of one ragdoll.
     pub fn new(def: &RagdollDef, seconds: f32) -> Self {
         let samples = (max(seconds, 0.0) * 60.0) as usize * def.joints.len();
-        // A wrong estimate of the caller costs time, not memory.
+        // Limit the reserved memory: if the caller's estimate is wrong, the vectors grow later.
         let samples = samples.min(1 << 20);
         Self {
             quality: FallQuality::default(),

@@ -6,7 +6,7 @@ use super::drop_test::worse;
 /// Verdict on a ragdoll's fitness for use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// Some metric is unusable.
+    /// Some metric is beyond the value at which a ragdoll is bad.
     Bad,
     /// Nothing breaks, but some metric is outside its limit.
     Usable,

@@ -9,7 +9,7 @@ use sinew_math::{Affine, Rotation, Vec3, trig};
 
 impl SpringSwing {
     /// Moves the springs one step nearer to the pose, instead of [`step`](Self::step): each bone's rotation from the
-    /// pose falls to 1/e in 0.3 s. Once the rest is negligible, nothing is computed any more
+    /// pose falls to 1/e in 0.3 s. Once the remaining rotation is negligible, nothing is computed
     /// ([`is_away`](Self::is_away)). Springs that have not been stepped yet are away immediately.
     ///
     /// # Panics

@@ -47,7 +47,7 @@ impl SpringSwing {
             1 => Mode::Swinging,
             2 => Mode::Easing,
             3 => Mode::Away,
-            _ => return Err(r.error("springs that neither swing nor rest")),
+            _ => return Err(r.error("unknown motion state of the springs")),
         };
         match swing.mode {
             Mode::Fresh | Mode::Away => {}
@@ -56,7 +56,7 @@ impl SpringSwing {
                 for _ in &rig.bones {
                     let offset = r.vec3()?;
                     if !offset.is_finite() {
-                        return Err(r.error("springs that never come to rest"));
+                        return Err(r.error("a remaining rotation of the springs is not finite"));
                     }
                     swing.offsets.push(offset);
                     swing.turns.push(r.rotation()?);
@@ -70,7 +70,7 @@ impl SpringSwing {
         let swing = self;
         swing.phase = r.f32()?;
         if !(0.0..1.0).contains(&swing.phase) {
-            return Err(r.error("a part of a tick that is none"));
+            return Err(r.error("the elapsed share of a tick is not between 0 and 1"));
         }
         for _ in &rig.bones {
             swing.tips.push(r.vec3()?);

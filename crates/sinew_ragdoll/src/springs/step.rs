@@ -72,7 +72,7 @@ pub struct SpringSwing {
     /// `None` on swinging nodes.
     last: Vec<Affine>,
     moved: Vec<Option<Affine>>,
-    /// Pull of links on each tip per tick, metres.
+    /// Displacement that links cause at each tip per tick, metres.
     pulls: Vec<Vec3>,
 }
 
@@ -141,7 +141,7 @@ impl SpringSwing {
         if self.mode != Mode::Swinging {
             return self.rest(step);
         }
-        // A pause does not change the motion.
+        // A step of zero length (a pause) does not change the motion.
         if step.seconds == 0.0 {
             return;
         }

@@ -8,7 +8,8 @@ use sinew_anim::LocalTransform;
 use sinew_math::trig::pow;
 use sinew_math::{Affine, Mat3, Rotation, Vec3, normalize_or};
 
-/// Number of times that a tip is pushed out of the world within a tick: a corner has two sides.
+/// Number of times that a tip is pushed out of the world within a tick. One is not enough, because a corner has two
+/// sides.
 const PUSHES: usize = 2;
 
 /// A bone with all constraints and forces on its tip.

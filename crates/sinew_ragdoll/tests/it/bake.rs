@@ -39,7 +39,7 @@ fn baked_within(def: &Arc<CharacterDef>, impulse: Vec3, fps: f32, key_bound: Key
 const PUSH: Vec3 = Vec3::new(-30.0, 0.0, -70.0);
 
 #[test]
-fn figures_are_inside_the_limits() {
+fn quality_of_a_baked_fall_is_within_the_limits() {
     let quality = baked(&shared(walker()), PUSH, 30.0).quality;
     assert_eq!(quality.nan, 0);
     assert!(quality.energy_gain_max < 0.01, "{quality:?}");
@@ -97,7 +97,7 @@ fn only_pelvis_translation_and_rotations_have_keys() {
 }
 
 #[test]
-fn clip_starts_at_the_rest_place_of_the_file() {
+fn baked_clip_starts_in_the_pose_of_the_looped_clip() {
     let def = shared(walker());
     let first = &baked(&def, PUSH, 30.0).frames[0];
     let mut walking = rest_pose(&def.rig);
@@ -189,7 +189,7 @@ fn key_error_stays_within_the_bound_at_any_rate() {
 }
 
 #[test]
-fn no_bound_keeps_every_key() {
+fn bake_with_the_bound_all_keys_keeps_every_key() {
     let def = shared(walker());
     let all = baked_within(&def, PUSH, 30.0, KeyBound::ALL_KEYS);
     assert!(all.clip.channels.iter().all(|channel| channel.times.len() == all.frames.len()));
@@ -338,7 +338,7 @@ fn timed_drives_move_parts_and_return_them() {
 }
 
 #[test]
-fn movers_push_and_wind_blows() {
+fn moving_body_pushes_and_wind_blows_the_baked_character() {
     let mut def = walker();
     // With the default, clips would move the character and the plough would pass through it.
     def.after_settling = AfterSettling::StayDown;

@@ -167,7 +167,7 @@ fn character_resists_a_field_until_its_feet_slip() {
 }
 
 #[test]
-fn strong_wind_fells_and_updraft_lifts() {
+fn strong_wind_makes_a_character_fall_and_updraft_lifts_it() {
     let mut def = walker();
     def.in_world.toughness = Toughness::Impulse(60.0);
     let def = shared(def);

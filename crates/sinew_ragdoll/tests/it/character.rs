@@ -261,11 +261,11 @@ fn get_up_clips_are_recognised_by_their_motion() {
     let def = walker();
     let mut clips = def.motions().clips.clone();
     let expected = def.motions().get_ups.clone();
-    assert_eq!(def.get_ups_among(&clips), expected, "by their names");
+    assert_eq!(def.get_ups_among(&clips), expected, "get-up clips were not recognised by their names");
     for (index, clip) in clips.iter_mut().enumerate() {
         clip.name = format!("take {index}");
     }
-    assert_eq!(def.get_ups_among(&clips), expected, "by what they do");
+    assert_eq!(def.get_ups_among(&clips), expected, "get-up clips were not recognised by their motion");
     clips[0].name = "Rig|Stand-Up".into();
     assert_eq!(
         def.get_ups_among(&clips),
@@ -334,7 +334,7 @@ fn waving() -> Arc<CharacterDef> {
 }
 
 #[test]
-fn hit_while_getting_up_knocks_it_over_again() {
+fn hit_while_getting_up_makes_the_character_limp_again() {
     let def = shared(walker());
     for wanted in [State::Preparing, State::GettingUp] {
         // A push makes the character fall onto its side.

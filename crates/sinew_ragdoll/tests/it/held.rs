@@ -304,7 +304,7 @@ fn character_place_follows_its_body() {
 }
 
 #[test]
-fn death_of_one_character_leaves_the_others() {
+fn stay_down_of_one_character_leaves_the_other_getting_up() {
     let def = shared(walker());
     let mut world = level();
     let mut pair =

@@ -309,13 +309,17 @@ fn lift_and_turntable_carry_the_character() {
     let before = seen(&world, &character);
     run(&mut world, &mut character, 180);
     let after = seen(&world, &character);
-    assert!(place(&character).y > 3.0, "it has risen: {}", place(&character));
+    assert!(
+        place(&character).y > 3.0,
+        "the lift has not carried the character up: it is at {}",
+        place(&character)
+    );
     assert!((after.translation - before.translation).length() < 0.02, "{before:?} {after:?}");
     assert!(after.rotation.angle_to(before.rotation) < 0.01);
 }
 
 #[test]
-fn code_steers_the_character() {
+fn set_move_and_face_steer_the_character() {
     let def = stander();
     let mut world = level();
     let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
@@ -410,11 +414,11 @@ fn restored_character_continues_identically() {
 
 #[test]
 fn character_is_send_and_sync() {
-    fn is_send<T: Send + Sync>(_: &T) {}
+    fn require_send_and_sync<T: Send + Sync>(_: &T) {}
     let def = shared(walker());
     let mut world = level();
     let character = Character::spawn(&mut world, &def, Transform::IDENTITY);
-    is_send(&character);
+    require_send_and_sync(&character);
 }
 
 #[test]

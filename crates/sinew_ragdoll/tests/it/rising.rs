@@ -297,7 +297,7 @@ fn parts_stay_out_of_a_wall_beside_the_body() {
 }
 
 /// A body that lies on its face while its only get-up clip begins on its back snaps over if it may not roll over first;
-/// the judge reports that.
+/// `RisingQuality::faults` then reports a snap.
 #[test]
 fn get_up_from_another_side_is_reported() {
     let snap = |getting_ready: GettingReady| {

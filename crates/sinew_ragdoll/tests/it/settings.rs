@@ -98,7 +98,7 @@ fn joints_of_both_sides_are_mirrored() {
 
 /// Settings without effect used to be accepted.
 #[test]
-fn settings_that_a_joint_or_a_total_rules_out_are_refused() {
+fn settings_without_effect_are_refused() {
     let wrong = |name: &str, bone: BoneSettings, total: Option<f32>| match with(&Settings {
         mass: total,
         ..of_bone(name, bone)

@@ -420,7 +420,7 @@ fn skinned_hats_and_packs_rest_on_the_floor() {
 /// A club is skinned to a foot, which would get the shape of the other foot. The foot's shape encloses the club, and
 /// the feet do not count as lopsided.
 #[test]
-fn what_is_skinned_to_the_end_of_a_limb_rests_on_the_floor() {
+fn object_skinned_to_the_end_of_a_limb_rests_on_the_floor() {
     let mut rig = mannequin().rig;
     let end = Role::Foot(sinew_anim::Side::Right);
     grown(&mut rig, end, Vec3::Z * 0.5, Vec3::new(0.02, 0.02, 0.45));

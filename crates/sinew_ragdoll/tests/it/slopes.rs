@@ -118,7 +118,7 @@ fn few_joints_pass_through_the_edge_of_a_step() {
     let mut depths: Vec<f32> = (0..64).map(|k| gets_up(&def, &stairs(), push(k))[0]).collect();
     depths.sort_unstable_by(f32::total_cmp);
     println!("deepest of each, m: {depths:.3?}");
-    assert!(depths[51] < 0.1, "at most 12 of 64 may be deep: {depths:?}");
+    assert!(depths[51] < 0.1, "at most 12 of 64 get-ups may be deep in the ground: {depths:?}");
     assert!(depths[63] < 0.25, "{depths:?}");
 }
 

@@ -303,7 +303,7 @@ fn avatar_tips_stay_still_for_a_minute() {
 
 /// At 240 frames a second, tips drawn between two ticks are no deeper in the turning, nodding head than at ticks.
 #[test]
-fn colliders_hold_between_ticks() {
+fn tips_drawn_between_ticks_stay_out_of_colliders() {
     let mut def = maned(&HAIR);
     let mut springs = def.springs().source().clone();
     let ColliderShape::Sphere { offset, .. } = springs.colliders[0].shape else { panic!("a ball") };

@@ -13,7 +13,7 @@ pub(super) enum Pressed {
     Act(Act),
 }
 
-/// Describes an instruction that is carried out.
+/// Returns the message for an instruction that the character executes.
 pub(super) fn told(act: Act, character: &Character) -> String {
     match act {
         Act::Play(clip) => {

@@ -16,7 +16,7 @@ use sinew_picture::{LineDepth, draw};
 const REACH: f32 = 11.0;
 /// Change of a limit by one key press, radians (5°).
 const KEY_TURN: f32 = 5.0 * core::f32::consts::PI / 180.0;
-/// Widest swing to each side, radians: a swing of half a turn has no direction.
+/// Widest swing to each side, radians. It is below half a turn, because the direction of such a swing is not defined.
 const WIDEST: f32 = 170.0 * core::f32::consts::PI / 180.0;
 /// Smallest and largest factor on a fitted shape.
 pub(super) const SCALES: [f32; 2] = [0.3, 3.0];
@@ -37,9 +37,10 @@ pub(super) struct Bench {
 /// Handle in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Handle {
-    /// End of a range (0: swing about y, 1: about z, 2: of a hinge); true: its upper end.
+    /// End of a range: the index of the range (0: swing about y, 1: swing about z, 2: hinge), and true for its upper
+    /// end.
     Limit(usize, bool),
-    /// Side of the shape, with the shape's factor and radius (metres) when the handle was grabbed.
+    /// Side of the shape. The numbers are the shape's scale factor and its radius (metres) when the handle was grabbed.
     Size(f32, f32),
 }
 

@@ -53,7 +53,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     });
 }
 
-/// Returns true if each word of the search is in a scene's name, line or chapter.
+/// Returns true if each word of the search is in a scene's name, description or chapter.
 fn matches(scene: &Scene, search: &str) -> bool {
     let text = format!("{} {} {}", scene.name, scene.about, scene.chapter.title()).to_lowercase();
     search.to_lowercase().split_whitespace().all(|word| text.contains(word))

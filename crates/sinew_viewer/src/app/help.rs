@@ -3,7 +3,7 @@
 use super::{App, style};
 use egui::{Align2, Color32, FontId, Grid, RichText};
 
-/// Hints shown at the start, in a small picture only the first.
+/// Hints shown at the start; a small picture shows only the first.
 const HINTS: [&str; 3] = [
     "Click to push him; drag a body to pull it, the background to look around",
     "Press B to throw a ball, Space to pause, R to start again",
@@ -38,7 +38,7 @@ const KEYS: [(&str, &str); 24] = [
     ("Escape", "close it"),
 ];
 
-/// Hints and the last message, over the picture.
+/// Shows the hints and the last message over the picture.
 pub(super) fn overlay(app: &App, ui: &mut egui::Ui) {
     let area = app.area;
     let font = FontId::proportional(14.0);

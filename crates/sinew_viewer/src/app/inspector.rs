@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 /// Width of the panel, points.
 const WIDTH: f32 = 290.0;
 
-/// Number of lines of a report that are visible without a click: sizes and counts.
+/// Number of lines of a report that are visible without a click; they show sizes and counts.
 const FIRST_LINES: usize = 2;
 
 /// Shows the right panel.
@@ -190,7 +190,7 @@ fn figures(app: &App, ui: &mut egui::Ui) {
     }
 }
 
-/// Rounding error of a 32-bit value, a ratio.
+/// Relative rounding error of a 32-bit value.
 const ROUNDING: f64 = 1e-6;
 
 /// Plots the history of a metric, and a line at its expected value.

@@ -6,7 +6,7 @@ use egui::Key;
 use sinew::math::Vec3;
 
 impl App {
-    /// Handles the keys of a frame, unless a text field has them.
+    /// Handles the keys of a frame, unless a text field has the keyboard focus.
     pub(super) fn keys(&mut self, ui: &egui::Ui) {
         let ctx = ui.ctx();
         if ctx.egui_wants_keyboard_input() {

@@ -70,9 +70,9 @@ pub struct Options {
     pub ghost: Option<PathBuf>,
     /// True to hide the list of scenes: for a small window on one scene.
     pub hides_browser: bool,
-    /// True to hide all panels and messages: for a picture on a page with its own controls.
+    /// True to hide all panels and messages, for a picture on a page that has its own controls.
     pub hides_panels: bool,
-    /// True to hide measured times: for pictures that are compared.
+    /// True to hide measured times, so that pictures can be compared.
     pub hides_times: bool,
     /// File to which a picture of the window is written after the steps; then the window closes.
     pub screenshot: Option<PathBuf>,
@@ -106,7 +106,7 @@ pub struct App {
     pending: f64,
     last_frame: Option<Instant>,
     frame_time: f32,
-    /// Time since the last frame, seconds.
+    /// Time between the last two frames, seconds.
     passed: f32,
     layers: Vec<Layer>,
     search: String,
@@ -132,7 +132,7 @@ pub struct App {
     past: Vec<Subject>,
     future: Vec<Subject>,
     tour: Tour,
-    /// Settings that run beside the next ones.
+    /// Settings with which a second run takes place beside the next one.
     pinned: Option<Subject>,
     hides_times: bool,
     hides_browser: bool,
@@ -295,7 +295,7 @@ impl App {
         self.area
     }
 
-    /// Returns true if the next frame differs from this one without input.
+    /// Returns true if the next frame will differ from this one even without input.
     pub fn is_moving(&self) -> bool {
         self.running
             || self.mouse.is_busy()

@@ -16,11 +16,11 @@ const THROW: f32 = 14.0;
 /// Rotation of the camera per point of mouse motion, radians.
 const TURN: f32 = 0.0065;
 
-/// Impulse of a push, N·s: a shove with both hands that makes a man fall; and largest speed of a light body after it,
-/// m/s.
+/// Impulse of a push, N·s (a shove with both hands that makes a man fall), and the largest speed that a push gives to a
+/// light body, m/s.
 const SHOVE: f32 = 130.0;
 const SHOVE_SPEED: f32 = 6.0;
-/// Factor on the slope of a push, from the slope of the view: pushes go along the ground.
+/// Factor from the slope of the view to the slope of a push; small, so that pushes go along the ground.
 const LIFT: f32 = 0.3;
 /// Distance beside a character at which a push still reaches it, as a share of the camera's distance.
 const FINGER: f32 = 0.06;
@@ -28,7 +28,7 @@ const FINGER: f32 = 0.06;
 /// State of the mouse.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Mouse {
-    /// Distance along the view of the grabbed point, metres.
+    /// Distance of the grabbed point from the camera along the viewing direction, metres.
     held: Option<f32>,
 }
 
@@ -99,7 +99,7 @@ pub(super) fn act(app: &mut App, ui: &mut egui::Ui) {
     }
 }
 
-/// Shows by the cursor whether a drag pulls the body below it.
+/// Sets the cursor that shows whether a drag would pull the body below it.
 fn show_grip(app: &App, ui: &egui::Ui) {
     if !app.session.is_live() || app.bench.is_busy() {
         return;
@@ -138,8 +138,8 @@ fn subject(app: &App) -> Pos2 {
     place.filter(|at| app.area.contains(*at)).unwrap_or(app.area.center())
 }
 
-/// Returns the body on a ray, and the point on it; else the nearest of a character's bodies beside the ray, because a finger
-/// is wide.
+/// Returns the body that a ray hits, and the point; if it hits none, the nearest body of a character beside the ray,
+/// because a finger is wide.
 fn pushed(app: &App, ray: &Ray) -> Option<(BodyId, Vec3)> {
     let world = app.session.world();
     let of_figures = app.session.instance().bodies_of_figures();
@@ -177,13 +177,13 @@ pub(super) fn ray(app: &App, at: Pos2) -> Ray {
     app.orbit.ray(at.x / area.width(), at.y / area.height(), area.width() / area.height())
 }
 
-/// Returns the distance along the view of a point, metres.
+/// Returns the distance of a point from the camera along the viewing direction, metres.
 fn depth(app: &App, point: Vec3) -> f32 {
     let camera = app.camera();
     (point - camera.position).dot(camera.axes(1.0).forward)
 }
 
-/// Returns the point of a ray at a distance along the view.
+/// Returns the point of a ray at a distance along the viewing direction.
 fn at_depth(app: &App, ray: &Ray, depth: f32) -> Vec3 {
     let way = ray.direction.normalize();
     ray.origin + way * (depth / way.dot(app.camera().axes(1.0).forward).max(1e-3))

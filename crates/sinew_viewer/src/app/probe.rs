@@ -19,7 +19,7 @@ pub(super) struct Probe {
 }
 
 impl Probe {
-    /// Finds the surface below the pointer, and writes what it is beside the pointer.
+    /// Finds the surface below the pointer, and writes its description beside the pointer.
     pub fn update(&mut self, below: Option<(Pos2, Ray)>, world: &World, ui: &egui::Ui) {
         self.hit = None;
         let Some((at, ray)) = below.filter(|_| self.is_on) else { return };

@@ -6,7 +6,7 @@ use crate::session::Subject;
 use sinew_scenes::scenes::Metric;
 
 impl App {
-    /// Runs all scenes to their ends, one after the other, or stops; results stay.
+    /// Starts to run all scenes to their ends, one after the other, or stops the tour in progress. Keeps the results.
     pub(super) fn tour(&mut self) {
         if self.tour.runs {
             self.tour.runs = false;

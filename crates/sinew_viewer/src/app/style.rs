@@ -31,7 +31,7 @@ pub(super) fn apply(ctx: &egui::Context) {
             style.text_styles.insert(text, FontId::proportional(size));
         }
         style.text_styles.insert(TextStyle::Monospace, FontId::monospace(12.5));
-        // Panels appear without a fade, because a screenshot might be taken during the fade.
+        // Show panels without a fade, because a screenshot might be taken during it.
         style.animation_time = 0.0;
         // Floating bars would cover values at the right edge.
         style.spacing.scroll = egui::style::ScrollStyle::solid();

@@ -5,7 +5,7 @@ use sinew_scenes::scenes::{Scene, registry};
 /// A run through all scenes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tour {
-    /// Scenes that have ended, and whether they met their expectations.
+    /// Scenes that have ended, each with true if it met its expectations.
     results: Vec<(&'static str, bool)>,
     pub runs: bool,
 }

@@ -5,7 +5,7 @@ use super::{App, bench};
 use crate::session::Subject;
 
 impl App {
-    /// Undoes the last operation, edit or change of settings, or does it again.
+    /// Undoes or redoes the last operation, edit or change of settings.
     pub fn undo(&mut self, redo: bool) {
         match self.session.undo(redo) {
             Err(line) => self.tell(line),
@@ -19,7 +19,7 @@ impl App {
         }
     }
 
-    /// Opens the scene with the settings before the last change, or after it.
+    /// Opens the scene with the settings before the last change (undo) or after it (redo).
     fn undo_settings(&mut self, redo: bool) {
         let list = if redo { &mut self.future } else { &mut self.past };
         let Some(subject) = list.pop() else {
@@ -34,14 +34,14 @@ impl App {
         self.reopen(subject);
     }
 
-    /// Opens the scene with other settings; the present ones can be restored.
+    /// Opens the scene with other settings; undo restores the present ones.
     pub(super) fn open_with_settings(&mut self, subject: Subject) {
         self.past.push(self.session.subject().clone());
         self.future.clear();
         self.reopen(subject);
     }
 
-    /// Opens a subject; the lists of undo and redo and the pinned run stay.
+    /// Opens a subject and keeps the lists of undo and redo and the pinned run.
     fn reopen(&mut self, subject: Subject) {
         let [past, future] = [&mut self.past, &mut self.future].map(core::mem::take);
         let pinned = self.pinned.take();

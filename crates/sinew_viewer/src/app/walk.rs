@@ -4,7 +4,7 @@ use super::App;
 use sinew::math::{Vec3, normalize_or};
 use sinew_scenes::recording::Operation;
 
-/// Speed of a walk, and of a run, m/s.
+/// Speeds of a walk and of a run, m/s.
 const SPEEDS: [f32; 2] = [1.4, 3.2];
 /// Height of the camera's target above the soles, metres.
 const EYES: f32 = 1.1;

@@ -61,10 +61,16 @@ enum Told {
     /// The screen, or the error; a browser provides it later.
     Screen(Result<Box<Screen>, GpuError>),
     /// Files dropped on the page.
-    #[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "a desktop tells paths"))]
+    #[cfg_attr(
+        not(target_arch = "wasm32"),
+        expect(dead_code, reason = "on a desktop, files are dropped as paths")
+    )]
     Files(Vec<NamedFile>),
     /// An order of the page.
-    #[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "a desktop has keys"))]
+    #[cfg_attr(
+        not(target_arch = "wasm32"),
+        expect(dead_code, reason = "on a desktop, keys take the place of the page's buttons")
+    )]
     Order(Order),
 }
 

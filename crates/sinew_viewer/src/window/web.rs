@@ -94,7 +94,7 @@ impl Shown {
     }
 
     fn send(&self, told: Told) {
-        // If the viewer has ended, there is no receiver; the page is notified of that separately.
+        // If the viewer has ended, nothing receives the message; the page learns of the end by another message.
         let _ = self.proxy.send_event(told);
     }
 }
@@ -121,7 +121,7 @@ pub fn show(
     webgl: bool,
     panels: &str,
 ) -> Result<Shown, String> {
-    // Without this, WebAssembly reports only `unreachable`.
+    // Without this hook, WebAssembly reports a panic only as `unreachable`.
     std::panic::set_hook(Box::new(|what| console_error(&what.to_string())));
     let subject = scene.map(|name| Subject::scene(&name, &settings)).transpose()?;
     let steps = steps.map(u64::from);
@@ -151,7 +151,7 @@ pub(super) struct Host {
 impl Host {
     pub fn attributes(&self) -> WindowAttributes {
         let attributes = Window::default_attributes().with_canvas(Some(self.canvas.clone()));
-        // An active window takes the focus, to which the browser scrolls.
+        // On a page, do not activate the window: it would take the focus, and the browser would scroll to it.
         attributes.with_prevent_default(!self.is_part).with_active(!self.is_part)
     }
 
@@ -167,7 +167,7 @@ impl Host {
     ) -> Option<Told> {
         let proxy = self.proxy.clone();
         wasm_bindgen_futures::spawn_local(async move {
-            // If the page is gone, there is no receiver.
+            // If the page was closed, nothing receives the message.
             let _ = proxy.send_event(Told::Screen(screen.await));
         });
         None

@@ -1,10 +1,10 @@
-//! Steps by which a powered character catches itself after a push.
+//! Steps by which a powered character regains its balance after a push.
 //!
 //! A push gives the whole body a velocity. While the point at which the body would come to rest is over the feet,
 //! muscles and pins absorb the push. If the point is beyond the feet, the character stumbles: its mover moves as a
-//! pendulum on the planted feet, and a foot swings to the position that stops this pendulum, repeatedly. Once its speed
-//! is right, each foot steps back to the clips. Muscles and pins drive the bodies; inverse kinematics moves only the
-//! legs of their pose.
+//! pendulum on the planted feet, and a foot swings to the position that stops this pendulum, repeatedly. Once the
+//! character has its requested speed, each foot steps back to its position in the clips. Muscles and pins drive the
+//! bodies; inverse kinematics moves only the legs of their pose.
 
 mod step;
 mod support;
@@ -27,7 +27,7 @@ use step::{Pendulum, Print, STEP_TIMES};
 use support::Support;
 pub(super) use support::level;
 
-/// Number of steps after which the mover has its requested speed.
+/// Number of steps of the world after which the mover has reached its requested speed.
 const FOLLOWS: u32 = 4;
 
 /// Constraint on a foot.
@@ -37,26 +37,27 @@ enum Footing {
     Free,
     /// The foot stands on the ground, with its ankle at this transform in the world.
     Planted(Transform),
-    /// The foot has swung for `time` seconds of `lasts`. `home`: back to the clips.
+    /// The foot swings from one ankle transform to another; it has swung for `time` of `lasts` seconds. `home` is true
+    /// if it returns to its position in the clips.
     Swinging { from: Transform, to: Transform, time: f32, lasts: f32, home: bool },
 }
 
 /// The current stumble.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stumble {
-    /// Velocity over the ground, level, m/s.
+    /// Horizontal velocity over the ground, m/s.
     pub velocity: Vec3,
     /// Velocity of the ground, m/s.
     floor: Vec3,
     feet: [Footing; 2],
     steps: u32,
-    /// Number of steps of the world.
+    /// Number of steps of the world since the stumble began.
     age: u32,
-    /// True if the speed is right and the feet return.
+    /// True if the character has its requested speed and its feet return to the clips.
     caught: bool,
 }
 
-/// Feet in the clips' pose.
+/// The feet and the centre of mass in the clips' pose.
 struct Stand {
     center: Vec3,
     ankles: [Transform; 2],
@@ -72,7 +73,7 @@ pub(super) struct Balance {
     pub stumble: Option<Stumble>,
 }
 
-/// Inputs for balance.
+/// State of a character on which its balance depends.
 #[derive(Clone, Copy)]
 pub(super) struct Balancing<'a> {
     pub def: &'a CharacterDef,
@@ -83,7 +84,8 @@ pub(super) struct Balancing<'a> {
 }
 
 impl Balance {
-    /// Adds an impulse that the character's bodies received, N·s; returns false if it has no ground.
+    /// Adds an impulse that the character's bodies received, N·s; returns false if the character has no ground on which
+    /// to step.
     pub fn shove(
         &mut self,
         on: Balancing<'_>,
@@ -104,7 +106,8 @@ impl Balance {
         true
     }
 
-    /// Advances by a step; returns true if the character can no longer catch itself. `steps`: the character may step.
+    /// Advances by a step; returns true if the character must fall because it cannot regain its balance. `steps` is
+    /// true if the character may step.
     pub fn go_on(
         &mut self,
         on: Balancing<'_>,
@@ -130,7 +133,7 @@ impl Balance {
         stumble.age += 1;
         stumble.floor = stand.floor;
         if stumble.age >= FOLLOWS {
-            // Walls stop the character.
+            // Take the velocity of the mover, because walls may have stopped it.
             stumble.velocity = level(on.gait.velocity - stand.floor);
         }
         let dt = world.def().dt();
@@ -171,7 +174,8 @@ impl Balance {
 }
 
 impl Balancing<'_> {
-    /// Advances the fall of the pendulum on its feet, and swings the feet to their goals. Returns true if that fails.
+    /// Advances the pendulum on the planted feet, and swings the feet to their goals. Returns true if the steps cannot
+    /// stop the fall.
     fn catch(&self, world: &World, stand: &Stand, stumble: &mut Stumble) -> bool {
         let dt = world.def().dt();
         let mut body = self.pendulum(stand, stumble.velocity);
@@ -187,7 +191,8 @@ impl Balancing<'_> {
         }
         let outside = support.outside(body.capture());
         let off = (body.velocity - body.wish).length();
-        // A walker is fastest as a foot lands.
+        // Allow a larger speed error while the character walks, because its speed varies within each step and is
+        // largest when a foot lands.
         let calm = CAUGHT_SPEED + CAUGHT_SHARE * body.wish.length();
         if support.outside(body.center + body.velocity / body.omega - body.goes_on()) <= CAPTURE_MARGIN
             && off < calm
@@ -202,7 +207,7 @@ impl Balancing<'_> {
         false
     }
 
-    /// Aims a swinging foot at its best position, and puts it down immediately if the other foot must step.
+    /// Updates the goal of a swinging foot, or puts the foot down soon if only the other foot can stop the fall.
     fn aim(&self, world: &World, body: &Pendulum, stumble: &mut Stumble, foot: usize) {
         let Footing::Swinging { from, to, time, lasts, home: false } = stumble.feet[foot] else { return };
         let Some(stance) = stumble.feet[1 - foot].planted().filter(|_| time < AIMS_UNTIL * lasts) else {
@@ -211,7 +216,7 @@ impl Balancing<'_> {
         let mut print = self.print(body, foot, to, stance, lasts - time);
         let mut lasts = lasts;
         if from == to {
-            // In the air the body keeps the pushed velocity.
+            // While both feet are in the air, the body keeps its velocity.
             print = self.print(body, foot, from, stance, lasts - time);
             if print.miss > HOPELESS * body.height {
                 lasts = DROP_TIME;
@@ -223,7 +228,8 @@ impl Balancing<'_> {
         stumble.feet[foot] = Footing::Swinging { from, to, time, lasts, home: false };
     }
 
-    /// Swings the foot that can land nearer to a needed position.
+    /// Starts a step of the foot and with the duration for which the landing error, the reach and the time together
+    /// cost least.
     fn begin_step(&self, world: &World, body: &Pendulum, stumble: &mut Stumble) {
         let plans = (0..2).flat_map(|foot| STEP_TIMES.map(|lasts| (foot, lasts)));
         let plans = plans.filter_map(|(foot, lasts)| {
@@ -249,7 +255,7 @@ impl Balancing<'_> {
         body.print(foot, middle(from, foot), middle(stance, other), on, seconds)
     }
 
-    /// Returns the pose of the ankle when the centre of the sole is on the ground at `at`.
+    /// Returns the transform of the ankle of a foot whose sole has its centre on the ground at `at`.
     fn tread(&self, world: &World, foot: usize, at: Vec3) -> Transform {
         let def = self.def;
         let legs = def.legs().expect("the character stands on feet");
@@ -265,13 +271,14 @@ impl Balancing<'_> {
         Transform::new(translation + Vec3::Y * (ground.unwrap_or(floor) + legs.ankle_height), rotation)
     }
 
-    /// Returns heel and ball of a foot, from its ankle.
+    /// Returns the positions of heel and ball of a foot whose ankle has this transform.
     fn sole(&self, ankle: Transform, foot: usize) -> [Vec3; 2] {
         let legs = self.def.legs().expect("the character stands on feet");
         [ankle.translation, ankle.point(legs.balls[foot])]
     }
 
-    /// Returns the support by the planted feet, left and right, from their ankles.
+    /// Returns the area that the planted feet support; `ankles` are the left and the right one, `None` for a foot in
+    /// the air.
     fn support(&self, ankles: [Option<Transform>; 2]) -> Support {
         let mut support = Support::new(SOLE_RIM * self.def.ragdoll.height);
         for (foot, ankle) in ankles.into_iter().enumerate() {
@@ -293,7 +300,8 @@ impl Balancing<'_> {
         }
     }
 
-    /// Returns true if a capture point at the offset `away` from the centre of mass leaves the feet of the clips' pose.
+    /// Returns true if a capture point at the offset `away` from the centre of mass is more than `margin` metres
+    /// outside of the feet in the clips' pose.
     fn is_off(&self, stand: &Stand, away: Vec3, margin: f32) -> bool {
         let support = self.support(stand.ankles.map(Some));
         let center = support.nearest(stand.center);
@@ -329,7 +337,8 @@ impl Balancing<'_> {
         })
     }
 
-    /// Returns the offset of the bodies' capture point from the clips' one, which shows unreported pushes.
+    /// Returns the offset of the bodies' capture point from that of the clips. It is large after a push that no hit
+    /// reported.
     fn sway(&self, world: &World, stand: &Stand) -> Vec3 {
         let Some(ragdoll) = &self.physique.ragdoll else { return Vec3::ZERO };
         let (mut place, mut momentum) = (Vec3::ZERO, Vec3::ZERO);
@@ -353,8 +362,8 @@ impl Footing {
 }
 
 impl Stumble {
-    /// Moves the legs of a pose of the clips to the feet of a stumble after the given seconds; `way`: displacement of
-    /// the character until then. `place`: its transform then.
+    /// Moves the legs of a pose of the clips to where the feet of the stumble will be after the given seconds. `way` is
+    /// the displacement of the character until then, `place` its transform then.
     pub fn hold_feet(
         &self,
         def: &CharacterDef,
@@ -397,8 +406,8 @@ impl Stumble {
         );
     }
 
-    /// Restarts balancing after a caught character loses its balance again: feet that do not swing are planted where
-    /// they are.
+    /// Restarts the stumble when a character that had regained its balance loses it again: feet that do not swing are
+    /// planted at their present ankles.
     fn regain(&mut self, ankles: &[Transform; 2]) {
         self.caught = false;
         for (foot, &ankle) in self.feet.iter_mut().zip(ankles) {
@@ -478,7 +487,7 @@ impl Stumble {
                 0 => Ok(Footing::Free),
                 1 => Ok(Footing::Planted(from)),
                 2 | 3 => Ok(Footing::Swinging { from, to, time, lasts, home: tag == 3 }),
-                _ => Err(r.error("unknown way of a foot")),
+                _ => Err(r.error("unknown constraint on a foot")),
             }
         };
         let feet = [foot()?, foot()?];

@@ -9,15 +9,15 @@ use super::support::level;
 use crate::character::tuning::{BRAKES, FEET_APART, FOOT_SPEED, STEP_OUT, STEP_REACH, STRIDE_TIME};
 use sinew_math::{Rotation, Vec3, clamp, max, min, trig};
 
-/// Allowed step times, seconds, the longest first.
+/// Allowed durations of a step, seconds, the longest first.
 pub(super) const STEP_TIMES: [f32; 4] = [0.3, 0.26, 0.22, 0.18];
 
-/// A falling body in the horizontal plane; heights enter only by `ω`.
+/// The body as an inverted pendulum in the horizontal plane; its height enters only through `ω`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pendulum {
     /// Centre of mass, world, metres.
     pub center: Vec3,
-    /// Velocity of the centre of mass over the ground, and the requested one, m/s.
+    /// Velocity of the centre of mass over the ground, m/s.
     pub velocity: Vec3,
     pub wish: Vec3,
     /// Rate `ω` of the pendulum, 1/s.
@@ -27,40 +27,41 @@ pub(super) struct Pendulum {
     pub height: f32,
 }
 
-/// A position for a foot to land.
+/// A position at which a foot can land.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Print {
     /// Centre of the sole, with the sole horizontal.
     pub at: Vec3,
     /// Distance from `at` to the ideal position, metres.
     pub miss: f32,
-    /// Distance by which the body would then exceed the other foot's reach, metres.
+    /// Distance by which the body would then be beyond the reach of the other foot, metres.
     pub strain: f32,
 }
 
 impl Pendulum {
-    /// Returns the point at which the body would reach the requested velocity.
+    /// Returns the capture point for the requested velocity: supported there, the body approaches this velocity.
     pub fn capture(&self) -> Vec3 {
         level(self.center) + (self.velocity - self.wish) / self.omega
     }
 
-    /// Returns the best point of support to reach the requested velocity.
+    /// Returns a point of support beyond the capture point, at which the body reaches the requested velocity in finite
+    /// time.
     pub fn brake(&self) -> Vec3 {
         level(self.center) + (self.velocity - self.wish) * (BRAKES / self.omega)
     }
 
-    /// Returns the change of the body's velocity within `seconds` while it is supported at `on`.
+    /// Returns the change of the body's velocity within `seconds`, a short time, while it is supported at `on`.
     pub fn pushed(&self, on: Vec3, seconds: f32) -> Vec3 {
         (level(self.center) - on) * (self.omega * self.omega * seconds)
     }
 
-    /// Returns the offset before the capture point at which a foot lands to keep the requested speed.
+    /// Returns the offset from the landing position that keeps the requested velocity to the capture point.
     pub fn goes_on(&self) -> Vec3 {
         self.wish * (STRIDE_TIME / (trig::exp(self.omega * STRIDE_TIME) - 1.0))
     }
 
     /// Returns the landing position of a foot (0 left, 1 right) that lands in `seconds`. The centre of its sole is at
-    /// `from` now, the body stands on `on`, and the other foot is at `stance`.
+    /// `from` now, the body is supported at `on` until then, and the other foot is at `stance`.
     pub fn print(&self, foot: usize, from: Vec3, stance: Vec3, on: Vec3, seconds: f32) -> Print {
         let (grown, shrunk) = (trig::exp(self.omega * seconds), trig::exp(-self.omega * seconds));
         let (cosh, sinh) = (0.5 * (grown + shrunk), 0.5 * (grown - shrunk));
@@ -96,8 +97,8 @@ mod tests {
         Pendulum { center: Vec3::Y, velocity, wish, omega: 3.1, heading, height: 1.75 }
     }
 
-    /// Returns the velocities when a foot lands on its print, and after standing for as long as it swung; then the
-    /// remaining error of the print.
+    /// Returns the velocities at the time when a foot lands on its print and after the body has stood on it for as long
+    /// as the foot swung, and the landing error `miss`.
     fn after_a_step(mut body: Pendulum, foot: usize, stance: Vec3) -> ([Vec3; 2], f32) {
         let steps = 2800;
         let dt = STRIDE_TIME / steps as f32;
@@ -116,7 +117,7 @@ mod tests {
     /// On the capture point a pendulum's velocity decays as `exp(-ω t)`; an error `e` of the print adds `e ω sinh(ω
     /// t)`.
     #[test]
-    fn a_step_onto_the_print_slows_it_as_a_pendulum_does() {
+    fn step_onto_the_print_slows_the_body_like_a_pendulum() {
         let body = pushed(Vec3::new(0.1, 0.0, 0.9), Vec3::ZERO);
         let ([down, after], miss) = after_a_step(body, 0, Vec3::new(-0.05, 0.0, 0.02));
         let shrunk = trig::exp(-body.omega * STRIDE_TIME);
@@ -126,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_lets_it_go_on_as_it_is_to() {
+    fn step_keeps_the_requested_velocity() {
         let (wish, stance) = (Vec3::Z * 1.0, Vec3::new(-0.08, 0.0, 0.1));
         let body = Pendulum { center: Vec3::new(0.0, 1.0, 0.0), ..pushed(Vec3::Z * 1.0, wish) };
         let ([_, after], _) = after_a_step(body, 0, stance);
@@ -134,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn feet_do_not_cross() {
+    fn foot_that_would_cross_the_other_lands_beside_it() {
         let stance = Vec3::new(-0.1, 0.0, 0.0);
         let body = pushed(Vec3::X * -1.0, Vec3::ZERO);
         let print = body.print(0, -stance, stance, stance, STRIDE_TIME);

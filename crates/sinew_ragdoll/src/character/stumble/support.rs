@@ -24,7 +24,7 @@ impl Support {
         }
     }
 
-    /// Returns the nearest supporting point; `point` itself without support.
+    /// Returns the point of the support that is nearest to `point`; `point` itself if there is no support.
     pub fn nearest(&self, point: Vec3) -> Vec3 {
         let (point, points) = (level(point), &self.points[..self.count]);
         let mut nearest: Option<Vec3> = None;
@@ -56,7 +56,7 @@ pub(in crate::character) fn level(v: Vec3) -> Vec3 {
     Vec3::new(v.x, 0.0, v.z)
 }
 
-/// Returns the nearest point of a line from end to end.
+/// Returns the point nearest to `point` on the line from `a` to `b`.
 fn on_line(point: Vec3, a: Vec3, b: Vec3) -> Vec3 {
     let way = b - a;
     let square = way.dot(way);
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn two_soles_bear_what_is_between_them() {
+    fn two_soles_support_points_between_them() {
         let mut support = Support::new(0.05);
         assert_eq!(support.outside(at(3.0, 1.0)), 0.0, "a point cannot be outside an empty support");
         support.add([at(0.1, -0.05), at(0.1, 0.15)]);
