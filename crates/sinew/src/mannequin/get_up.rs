@@ -24,25 +24,24 @@ fn clip(name: &str, keys: &[Key], steps: &[Step]) -> Clip {
     })
 }
 
-/// A step of a foot to another position: the foot moves up, across and down, so that it does not slide.
+/// A step of a foot to another position: the foot goes up, over and down without sliding.
 struct Step {
     side: Side,
     /// Seconds.
     from: f32,
     to: f32,
-    /// Height by which the foot is lifted, metres. If it is too low, the foot drags over the floor when the clip plays
-    /// on other bodies.
-    height: f32,
 }
 
+/// Height by which a step is lifted, metres.
+const STEP_HEIGHT: f32 = 0.05;
 /// Share of a step at each end in which the foot moves only vertically.
-const STRAIGHT_UP: f32 = 0.2;
+const STRAIGHT_UP: f32 = 0.08;
 
 impl Step {
     fn ankle(&self, from: Vec3, to: Vec3, time: f32) -> Vec3 {
         let u = (time - self.from) / (self.to - self.from);
         let along = smoothstep((u - STRAIGHT_UP) / (1.0 - 2.0 * STRAIGHT_UP));
-        from + (to - from) * along + Vec3::Y * (16.0 * u * u * (1.0 - u) * (1.0 - u) * self.height)
+        from + (to - from) * along + Vec3::Y * (16.0 * u * u * (1.0 - u) * (1.0 - u) * STEP_HEIGHT)
     }
 }
 
@@ -84,8 +83,7 @@ pub(super) fn from_back() -> Clip {
         (2.4, nearly),
         (2.8, Posture::standing()),
     ];
-    let step = |side| Step { side, from: 0.9, to: 1.2, height: 0.05 };
-    let steps = [step(Left), step(Right)];
+    let steps = [Step { side: Left, from: 0.9, to: 1.2 }, Step { side: Right, from: 0.9, to: 1.2 }];
     clip("get_up_supine", &postures.map(|(at, posture)| Key { at, posture }), &steps)
 }
 
@@ -191,9 +189,9 @@ pub(super) fn from_face() -> Clip {
         (2.9, Posture::standing()),
     ];
     let steps = [
-        Step { side: Left, from: 1.4, to: 1.75, height: 0.1 },
-        Step { side: Right, from: 2.15, to: 2.55, height: 0.1 },
-        Step { side: Right, from: 2.55, to: 2.9, height: 0.1 },
+        Step { side: Left, from: 1.4, to: 1.75 },
+        Step { side: Right, from: 2.15, to: 2.55 },
+        Step { side: Right, from: 2.55, to: 2.9 },
     ];
     clip("get_up_prone", &postures.map(|(at, posture)| Key { at, posture }), &steps)
 }
@@ -282,7 +280,7 @@ fn stepping_up(on_all_fours: Posture) -> [Posture; 4] {
         chest: lean(2.0),
         neck: lean(-6.0),
         head: lean(-6.0),
-        right_foot: lifted(v(-0.105, 0.22, -0.20), 12.0, 8.0),
+        right_foot: lifted(v(-0.105, 0.20, -0.22), 24.0, 8.0),
         ..rising
     }
     .with_arms(Hanging { forward: 14.0, out: 9.0, elbow: 28.0 });
