@@ -199,8 +199,8 @@ pub(crate) const SQUARE_CORNER: f32 = 0.26;
 
 /// Longest diagonal that is not split, as a ratio to the spacing: slightly above √2, that of a square cell.
 ///
-/// Larger: limbs pass between particles. Smaller: diagonals of square cells are split, and edges run diagonally. Shown
-/// by the tests of `sheets`.
+/// Larger: limbs pass between particles. Smaller: diagonals of square cells are split, and edges run diagonally.
+/// Shown by the tests of `sheets`.
 pub(crate) const DIAGONAL: f32 = 1.45;
 
 /// Smallest particle distance that is tried, as a share of a sheet's extent.
@@ -276,7 +276,7 @@ pub(crate) const FEWEST_OF_A_SKELETON: usize = 4;
 /// Largest number of comparisons of unweighted vertices with weighted vertices per mesh part.
 ///
 /// Larger: reading huge meshes takes longer. Smaller: in large meshes fewer vertices are compared, and the nearest is
-/// found less exactly. Shown only by the reading time of huge meshes.
+/// found less exactly. Only shown by the reading time of huge meshes.
 pub(crate) const MOST_COMPARED: usize = 50_000_000;
 
 /// Least weight of a neighbouring bone, as a share of the nearest bone's, to be kept for a vertex.

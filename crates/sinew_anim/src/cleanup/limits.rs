@@ -5,7 +5,7 @@ use crate::learned_limits::LearnedLimit;
 use crate::rig::JointIdx;
 use sinew_math::max;
 
-/// How often and how far a joint was beyond its limit.
+/// Number of frames and largest angle by which a joint exceeded its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointExcess {
     /// Joint that exceeded its limit.

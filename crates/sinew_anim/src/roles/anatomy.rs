@@ -644,7 +644,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// How far the names of a rig are trusted, by comparing the names of mirrored pairs.
+/// Trust in the names of a rig, from a comparison of the names of mirrored pairs.
 enum Trust {
     /// The names are mirrored.
     All,

@@ -316,8 +316,8 @@ pub(crate) const MIRROR_TOLERANCE: f32 = 0.025;
 
 /// Weight of the unit in which the exporting program usually writes, on the same scale as the rarity of a unit.
 ///
-/// Larger: a giant is accepted if its exporting program writes metres. Smaller: the exporting program is ignored. Shown
-/// by the tests of `hints`.
+/// Larger: a giant is accepted if its exporting program writes metres. Smaller: the exporting program is ignored.
+/// Shown by the tests of `hints`.
 pub(crate) const UNIT_BY_EXPORTER: f32 = 1.0;
 
 /// Weight of a unit that all neighbouring files have, on the scale of [`UNIT_BY_EXPORTER`].

@@ -68,7 +68,7 @@ pub enum Container {
     Gltf,
 }
 
-/// Whether base colour pictures are decoded.
+/// Choice to decode base colour pictures or not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Textures {
     /// Pictures are not decoded: [`Rig::textures`] stays empty.

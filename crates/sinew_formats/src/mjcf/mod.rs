@@ -107,7 +107,7 @@ pub struct MjcfJoint {
     pub spring: Option<Spring>,
     /// Friction torque or force, N·m or N: the largest `frictionloss` of its hinges.
     pub friction_torque: f32,
-    /// Whether parent and child collide; they do only if the parent never moves.
+    /// Collision of parent and child; they collide only if the parent never moves.
     pub collision: JointCollision,
 }
 

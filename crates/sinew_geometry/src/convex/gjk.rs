@@ -111,7 +111,7 @@ pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>
     Cores::Apart(Bridge { on_a, on_b, distance: apart, normal: -toward_a })
 }
 
-/// Whether a separating direction is known. If it is, no simplex contains the origin, even if rounding suggests so.
+/// Knowledge of a separating direction. If one is known, no simplex contains the origin, even if rounding suggests so.
 #[derive(Clone, Copy, PartialEq)]
 enum Known {
     Nothing,

@@ -618,8 +618,8 @@ pub(crate) const MAY_BEGIN: f32 = 0.4;
 
 /// Uprightness of the pelvis (1: upright) below which a get-up clip counts as one that begins lying.
 ///
-/// Larger: clips that begin sitting count as lying. Smaller: clips that begin lying on a side count as sitting. Shown
-/// by the tests of `rising`.
+/// Larger: clips that begin sitting count as lying. Smaller: clips that begin lying on a side count as sitting.
+/// Shown by the tests of `rising`.
 pub(crate) const BEGINS_LYING: f32 = 0.6;
 
 /// Largest height of the pelvis above its lowest position at which a get-up may begin in a clip that begins sitting, as

@@ -93,7 +93,7 @@ fn drop(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Fallen { figures, flight })
 }
 
-/// Whether the static body of the model is added to the world.
+/// Choice to add the model's static body to the world or not.
 #[derive(Clone, Copy, PartialEq)]
 enum Ground {
     Keep,
