@@ -35,7 +35,7 @@ impl Activity {
                 if let Some(partner) = sleeping_partner(bodies, group) {
                     self.wake(bodies, partner);
                 }
-                group.get_up();
+                group.wake_particles();
             }
             if group.is_awake() && group.strays(distance) {
                 self.wake_borne(bodies, group, distance, (proxies, def));
@@ -71,7 +71,7 @@ fn comes(body: &Body) -> bool {
 }
 
 fn is_disturbed(group: &ParticleGroup, bodies: &Arena<Body>, proxies: &Proxies, way: f32, dt: f32) -> bool {
-    let Some(bed) = group.bed() else { return true };
+    let Some(support) = group.sleep_support() else { return true };
     let pulls = group.carriers().any(|body| bodies.get(body).is_none_or(comes));
     let near = |Owner { body: index, shape }| {
         let (body, shape) = (bodies.at(index), shape as usize);
@@ -85,7 +85,7 @@ fn is_disturbed(group: &ParticleGroup, bodies: &Arena<Body>, proxies: &Proxies, 
             );
         if touches { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    pulls || proxies.overlapping(&bed.bounds.expand(way), near).is_break()
+    pulls || proxies.overlapping(&support.bounds.expand(way), near).is_break()
 }
 
 /// True if the body sleeps in the island with number `island`.
@@ -102,15 +102,15 @@ pub(crate) fn sleeping_partner(bodies: &Arena<Body>, group: &ParticleGroup) -> O
 /// Wakes a sleeping group if the bodies that fell asleep with the group are awake.
 pub(crate) fn follow(bodies: &Arena<Body>, group: &mut ParticleGroup) {
     if group.partner().is_some() && sleeping_partner(bodies, group).is_none() {
-        group.get_up();
+        group.wake_particles();
     }
 }
 
 /// Recomputes the surroundings stored for sleeping groups.
-pub(crate) fn lie_down(bodies: &Arena<Body>, groups: &mut Arena<ParticleGroup>) {
+pub(crate) fn store_sleep_supports(bodies: &Arena<Body>, groups: &mut Arena<ParticleGroup>) {
     for (_, group) in groups.iter_mut() {
         let Some(island) = group.slept_with() else { continue };
         let partner = (0..bodies.slot_count() as u32).find(|&index| sleeps_in(bodies, index, island));
-        group.lie_down(partner);
+        group.store_sleep_support(partner);
     }
 }

@@ -20,7 +20,7 @@ use crate::contact::proxies::{Owner, Proxies};
 use crate::joint::{Incidence, Joint};
 use crate::particles::ParticleGroup;
 use core::ops::ControlFlow;
-pub(crate) use groups::{follow, lie_down, sleeping_partner};
+pub(crate) use groups::{follow, sleeping_partner, store_sleep_supports};
 use sinew_math::Transform;
 use sleeping_contacts::SleepingContacts;
 use slot_set::SlotSet;

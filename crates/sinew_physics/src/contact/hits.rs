@@ -77,7 +77,7 @@ impl OpenHits {
     }
 
     /// Reports the hits of this step: of [recorded](Self::note) pairs and of hits in progress.
-    pub fn tell(&mut self, bodies: &Arena<Body>, contacts: &[Contact], hits: &mut Vec<Hit>) {
+    pub fn report(&mut self, bodies: &Arena<Body>, contacts: &[Contact], hits: &mut Vec<Hit>) {
         hits.clear();
         self.next.clear();
         self.fast.extend(self.list.iter().map(OpenHit::key));

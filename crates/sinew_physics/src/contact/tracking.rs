@@ -129,7 +129,7 @@ struct Noted {
 }
 
 /// Lists of started or ended touches.
-pub(crate) struct Told<'a> {
+pub(crate) struct TouchEvents<'a> {
     pub bodies: &'a mut Vec<(BodyId, BodyId)>,
     pub shapes: &'a mut Vec<(ShapeId, ShapeId)>,
 }
@@ -167,14 +167,14 @@ impl Touches {
     }
 
     /// Reports the changes in order.
-    pub fn tell<'a>(&mut self, bodies: &Arena<Body>, mut begin: Told<'a>, mut end: Told<'a>) {
+    pub fn report<'a>(&mut self, bodies: &Arena<Body>, mut begin: TouchEvents<'a>, mut end: TouchEvents<'a>) {
         self.forget_unchanged();
         let noted = |&Seen { key, was, is }: &Seen| Noted { touch: touch_of(bodies, key), was, is };
         self.noted.extend(self.seen.iter().map(noted));
         self.noted.extend(self.gone.drain(..).map(|touch| Noted { touch, was: true, is: false }));
         // Reserves space for all pairs: the number varies from step to step.
         let most = self.noted.capacity();
-        for Told { bodies, shapes } in [&mut begin, &mut end] {
+        for TouchEvents { bodies, shapes } in [&mut begin, &mut end] {
             bodies.clear();
             bodies.reserve(most);
             shapes.clear();

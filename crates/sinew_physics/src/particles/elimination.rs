@@ -125,8 +125,8 @@ impl System {
             let inertia = self.below(forest, child);
             self.inverses[child] = (inertia + block).inverse();
             self.responses[child] = constrained(&self.inverses[child], &self.freedom[child]);
-            let felt = felt_by_parent(&inertia, &self.inverses[child], &block, &self.freedom[child]);
-            self.gathered_inertia[parent] += felt;
+            let gained = gained_by_parent(&inertia, &self.inverses[child], &block, &self.freedom[child]);
+            self.gathered_inertia[parent] += gained;
         }
         for &root in forest.roots() {
             let root = root as usize;
@@ -332,7 +332,7 @@ fn is_stiff(block: &Sym3, inertia: &Sym3) -> bool {
 /// Inertia that a parent gains from a child. With the child's inertia S, the spring's block B and the child's response
 /// W, it is `B − B W B`. For a free child that equals `S (S + B)⁻¹ B` and `S − S (S + B)⁻¹ S`; the function uses the
 /// form without cancellation.
-fn felt_by_parent(inertia: &Sym3, inverse: &Sym3, block: &Sym3, freedom: &Freedom) -> Sym3 {
+fn gained_by_parent(inertia: &Sym3, inverse: &Sym3, block: &Sym3, freedom: &Freedom) -> Sym3 {
     let stiff = is_stiff(block, inertia);
     let free = || {
         let last = if stiff { inertia } else { block };

@@ -70,7 +70,7 @@ use faces::Faces;
 use forest::{Forest, Holder};
 use impact::MAX_TOUCHES;
 use near::Near;
-use rest::{Bed, GroupRest};
+use rest::{GroupRest, SleepSupport};
 use self_collision::SelfCollision;
 use sinew_math::{Sym3, Transform, Vec3, dispatch, max};
 use system::{Freedom, System};
@@ -116,7 +116,7 @@ pub struct ParticleGroup {
     /// Position of each particle at the start of its time at rest, world, metres.
     places: Vec<Vec3>,
     /// Surroundings of the group while it sleeps, or slept until it was woken since the last step.
-    bed: Option<Bed>,
+    sleep_support: Option<SleepSupport>,
 
     forest: Forest,
     system: System,

@@ -6,7 +6,7 @@ use crate::body::shape::Shape;
 use crate::boxes::Aabb;
 use crate::id::BodyId;
 use crate::particles::contact::distance_at_least;
-use crate::particles::tuning::{BEARING, BED_ROOM, RESTING_SPEED, STRIKE_GAP};
+use crate::particles::tuning::{BEARING, RESTING_SPEED, STRIKE_GAP, SUPPORT_MARGIN};
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
 /// Awake, asleep with its island, or woken since the last step.
@@ -28,7 +28,7 @@ impl Default for GroupRest {
 
 /// Surroundings of a sleeping group, derived from the world.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bed {
+pub(crate) struct SleepSupport {
     /// Index of a body that fell asleep with the group, if any did.
     pub partner: Option<u32>,
     /// Bounds of all particles with their radii and a margin.
@@ -73,18 +73,18 @@ impl ParticleGroup {
 
     /// Index of a body that fell asleep with the group.
     pub(crate) fn partner(&self) -> Option<u32> {
-        self.bed.and_then(|bed| bed.partner)
+        self.sleep_support.and_then(|support| support.partner)
     }
 
     /// Surroundings of the group while it sleeps.
-    pub(crate) fn bed(&self) -> Option<&Bed> {
-        self.bed.as_ref().filter(|_| !self.is_awake())
+    pub(crate) fn sleep_support(&self) -> Option<&SleepSupport> {
+        self.sleep_support.as_ref().filter(|_| !self.is_awake())
     }
 
-    /// Wakes the group when the bodies that fell asleep with it are awake.
-    pub(crate) fn get_up(&mut self) {
+    /// Wakes the group because the bodies that fell asleep with it are awake.
+    pub(crate) fn wake_particles(&mut self) {
         self.rest = GroupRest::default();
-        self.bed = None;
+        self.sleep_support = None;
     }
 
     /// True if particles are attached to bodies; these bodies fall asleep only with the group.
@@ -107,12 +107,13 @@ impl ParticleGroup {
         self.velocities.fill(Vec3::ZERO);
         self.places.copy_from_slice(&self.positions);
         self.begin_step();
-        self.lie_down(partner);
+        self.store_sleep_support(partner);
     }
 
     /// Stores the surroundings of the sleeping group: their bounds, and a body that fell asleep with the group.
-    pub(crate) fn lie_down(&mut self, partner: Option<u32>) {
-        self.bed = Some(Bed { partner, bounds: self.bounds_of(&self.places).expand(BED_ROOM) });
+    pub(crate) fn store_sleep_support(&mut self, partner: Option<u32>) {
+        self.sleep_support =
+            Some(SleepSupport { partner, bounds: self.bounds_of(&self.places).expand(SUPPORT_MARGIN) });
     }
 
     /// Updates and returns the time at rest of the group, seconds; negative infinity if the group is not calm.

@@ -26,7 +26,7 @@ pub(super) const RESTING_SPEED: f32 = 0.001;
 ///
 /// Exceeds the distance of a group to its support. Larger: the group wakes for unrelated changes. Smaller: the group
 /// continues to sleep without its support. Shown by the tests of `sleep`.
-pub(super) const BED_ROOM: f32 = 0.02;
+pub(super) const SUPPORT_MARGIN: f32 = 0.02;
 
 /// Least vertical component of a surface normal at which the surface supports a particle, a ratio.
 ///

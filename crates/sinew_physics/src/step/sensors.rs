@@ -3,7 +3,7 @@
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::events::Events;
-use crate::contact::tracking::{ContactTracking, Told};
+use crate::contact::tracking::{ContactTracking, TouchEvents};
 use crate::contact::{Contact, Effect, pairs_of};
 
 /// Compares the sensor pairs with those of the previous step, and reports hits. Clears the marks of changed bodies.
@@ -24,11 +24,11 @@ pub(crate) fn sensors(
         sensed.note(pair[0].key, was, is);
         pair.iter_mut().for_each(|contact| contact.sensed = is);
     }
-    sensed.tell(
+    sensed.report(
         bodies,
-        Told { bodies: &mut events.sensor_begin, shapes: &mut events.sensor_shapes_begin },
-        Told { bodies: &mut events.sensor_end, shapes: &mut events.sensor_shapes_end },
+        TouchEvents { bodies: &mut events.sensor_begin, shapes: &mut events.sensor_shapes_begin },
+        TouchEvents { bodies: &mut events.sensor_end, shapes: &mut events.sensor_shapes_end },
     );
-    meetings.hits.tell(bodies, contacts, &mut events.hits);
+    meetings.hits.report(bodies, contacts, &mut events.hits);
     meetings.settle(bodies);
 }

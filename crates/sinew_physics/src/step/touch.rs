@@ -6,7 +6,7 @@ use crate::body::Body;
 use crate::body::def::BodyKind;
 use crate::collide::ManifoldPoint;
 use crate::contact::events::Events;
-use crate::contact::tracking::{ContactTracking, Told};
+use crate::contact::tracking::{ContactTracking, TouchEvents};
 use crate::contact::{Contact, ContactMemory, Effect, pairs_of, slop};
 use crate::field::Fields;
 use crate::joint::Joint;
@@ -42,10 +42,10 @@ pub(crate) fn touch(
             pair.iter_mut().for_each(|contact| contact.memory = ContactMemory::default());
         }
     }
-    touching.tell(
+    touching.report(
         bodies,
-        Told { bodies: &mut events.begin, shapes: &mut events.shapes_begin },
-        Told { bodies: &mut events.end, shapes: &mut events.shapes_end },
+        TouchEvents { bodies: &mut events.begin, shapes: &mut events.shapes_begin },
+        TouchEvents { bodies: &mut events.end, shapes: &mut events.shapes_end },
     );
     // Pressure through particles counts as a touch.
     let groups = groups.iter().map(|(_, group)| group).filter(|group| group.is_awake());

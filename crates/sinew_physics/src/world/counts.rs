@@ -7,7 +7,7 @@ use crate::world::World;
 impl World {
     /// Reports the counts of the last step from its final contacts, without the contacts of bodies that fell asleep in
     /// that step.
-    pub(crate) fn tell_counts(&self, profiler: &dyn Profiler) {
+    pub(crate) fn report_counts(&self, profiler: &dyn Profiler) {
         if !profiler.is_counting() {
             return;
         }

@@ -258,7 +258,7 @@ impl World {
         let context = StepContext { dt, h, substeps, time: self.time(), runner, profiler };
         self.work = Work::default();
         step(self, &context);
-        self.tell_counts(profiler);
+        self.report_counts(profiler);
         self.work = self.work + self.islands.work();
         self.steps += 1;
     }

@@ -106,7 +106,7 @@ impl World {
             return Err(r.error("contacts are out of order").into());
         }
         let mut groups = Arena::load(r, |r| load_group(r, &bodies))?;
-        crate::activity::lie_down(&bodies, &mut groups);
+        crate::activity::store_sleep_supports(&bodies, &mut groups);
         let fields = Arena::load(r, |r| FieldDef::load(r, &self.functions, &self.library))?;
         let count = r.count(8)?;
         let mut disabled = Vec::with_capacity(count);

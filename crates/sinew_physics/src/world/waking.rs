@@ -130,10 +130,10 @@ impl World {
     fn wake_groups_around(&mut self, index: u32) {
         let (id, body) = (self.bodies.id(index), self.bodies.at(index));
         for (_, group) in self.groups.iter_mut() {
-            let Some(bed) = group.bed() else { continue };
+            let Some(support) = group.sleep_support() else { continue };
             let shapes = 0..body.shapes.len();
             let bounds = |shape: usize| body.shapes[shape].shape.aabb(&body.world_from_shape(shape));
-            if shapes.into_iter().any(|shape| bounds(shape).overlaps(&bed.bounds))
+            if shapes.into_iter().any(|shape| bounds(shape).overlaps(&support.bounds))
                 || group.carriers().any(|body| body == id)
             {
                 group.wake();

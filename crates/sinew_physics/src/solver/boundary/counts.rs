@@ -17,7 +17,7 @@ const PER_STEP: u64 = 2;
 
 impl IslandSolver {
     /// Reports the counts of the step to a profiler at the end of the step.
-    pub(in crate::solver) fn tell_counts(&self, profiler: &dyn Profiler) {
+    pub(in crate::solver) fn report_counts(&self, profiler: &dyn Profiler) {
         if !profiler.is_counting() {
             return;
         }

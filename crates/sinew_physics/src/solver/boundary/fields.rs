@@ -37,7 +37,7 @@ impl IslandSolver {
             (body.force, body.torque) = (force, torque);
         }
         for taken in groups.iter_mut() {
-            taken.feel(&view.fields, self.h);
+            taken.compute_field_forces(&view.fields, self.h);
         }
         self.attract(view, groups);
     }

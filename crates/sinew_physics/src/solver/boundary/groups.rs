@@ -20,7 +20,7 @@ pub(crate) struct TakenGroup {
 impl TakenGroup {
     /// Lists the field forces on the particles at their present positions, N; each force is limited to one that stops its particle, see
     /// [`crate::field`].
-    pub fn feel(&mut self, fields: &Fields<'_>, h: f32) {
+    pub fn compute_field_forces(&mut self, fields: &Fields<'_>, h: f32) {
         self.group.outer_forces().clear();
         for i in 0..self.group.positions().len() {
             let target = Target::of_particle(&self.group, i);

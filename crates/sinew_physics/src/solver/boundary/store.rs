@@ -11,7 +11,7 @@ use crate::stage::Profiler;
 impl IslandSolver {
     /// Writes the results of the island.
     pub fn store(&self, solution: &mut IslandSolution<'_>, profiler: &dyn Profiler) {
-        self.tell_counts(profiler);
+        self.report_counts(profiler);
         for ((solved, body), v) in solution.bodies.iter_mut().zip(&self.bodies).zip(&self.velocities) {
             let velocity = Velocity { linear: linear(v), angular: angular(v) };
             let SolverBody { index, pose, is_limited, .. } = *body;
